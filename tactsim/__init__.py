@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from tactsim.dataset.use.loading import load as load_data
     from tactsim.errors import InputError, TactsimError
     from tactsim.experiments.annulus.closed_form import ClosedForm
+    from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
     from tactsim.experiments.grasp.grasp import Grasp
     from tactsim.experiments.grasp.setup import Block, Embedded
     from tactsim.experiments.indentation.indentation import Indentation
@@ -56,6 +57,7 @@ if TYPE_CHECKING:
 __all__ = [
     "Annulus",
     "Block",
+    "BoundaryValueProblem",
     "Case",
     "ClosedForm",
     "Coulomb",
@@ -101,6 +103,7 @@ __all__ = [
 _PLACES = {
     "Annulus": "tactsim.contact.annulus:Annulus",
     "Block": "tactsim.experiments.grasp.setup:Block",
+    "BoundaryValueProblem": "tactsim.experiments.boundary_value.boundary_value_problem:BoundaryValueProblem",
     "Case": "tactsim.case.model:Case",
     "ClosedForm": "tactsim.experiments.annulus.closed_form:ClosedForm",
     "Coulomb": "tactsim.contact.coulomb:Coulomb",

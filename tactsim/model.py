@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import inspect
 import itertools
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, get_type_hints
 
@@ -69,6 +69,15 @@ class FrozenModel(BaseModel, metaclass=_MadeInPython):
     """A closed, immutable value: unknown keys, NaN and later changes are errors."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+
+def plain(value: Any) -> Any:
+    """A value from Python as the plain data of a case file: as `written`, and models as mappings."""
+    if isinstance(value, FrozenModel):
+        return value.model_dump(mode="json", by_alias=True, context={"units": "written"})
+    if isinstance(value, Mapping):
+        return {key: plain(item) for key, item in value.items()}
+    return [plain(item) for item in value] if isinstance(value, list | tuple) else written(value)
 
 
 def check_increasing(**lists: Sequence[float]) -> None:

@@ -199,20 +199,23 @@ def _is_pint(value: Any) -> bool:
 
 
 def written(value: Any) -> Any:
-    """A value from Python as a case file holds it: quantities of pint as text, within lists and mappings too."""
-    if _is_pint(value):
-        return f"{value.magnitude:.15g} {value.units:~C}"
+    """A value from Python as a case file holds it: quantities of pint and of results as text, numpy as numbers."""
+    if _is_pint(value) and not hasattr(value.magnitude, "__len__"):
+        return f"{value.magnitude:.15g} {value.units:~C}".rstrip()
+    if hasattr(value, "unit") and hasattr(value, "value"):
+        return f"{value.value} {value.unit}".removesuffix(" 1")
+    if hasattr(value, "tolist") and not _is_pint(value):
+        return value.tolist()
     if isinstance(value, Mapping):
         return {key: written(item) for key, item in value.items()}
-    return [written(item) for item in value] if isinstance(value, list | tuple) else value
+    return [written(item) for item in value] if isinstance(value, list | tuple) or _is_pint(value) else value
 
 
 def _reader(unit: str, usual: str) -> Callable[[Any, ValidationInfo], float]:
     def read(value: Any, info: ValidationInfo) -> float:
+        value = value if isinstance(value, str | int | float) else written(value)
         if isinstance(value, str):
             return parse_quantity(value, unit)
-        if _is_pint(value):
-            return parse_quantity(written(value), unit)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InvalidQuantity(f"{shown(value)} is not a quantity; expected text such as '1 {usual}'")
         if info.context and info.context.get("units") == "required":

@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import replace
 
+from matplotlib.text import Text
+
 from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.results import Result, SolverReport, Status
 
+BORDER = 2
+"""Pixels by which words may reach beyond a figure."""
 SOLVER = SolverReport(unknowns=1000, elements=100, linear_solver="superlu", rejected_steps=0, newton_iterations=12)
 MESH = MeshReport(
     content="0" * 16,
@@ -46,3 +50,21 @@ def unmarked_figures(result: Result) -> list[str]:
     figures = replace(result, status=Status.INTERRUPTED, reason="stopped by the user").plot()
     words = {name: " ".join(figure.get_supxlabel().split()) for name, figure in figures.items()}
     return [name for name, said in words.items() if not said.startswith("INTERRUPTED") or "stopped by the user" not in said]
+
+
+def cut_words(result: Result) -> list[str]:
+    """Words in a figure of the result that reach beyond its border; labels of ticks aside, some of which are never drawn."""
+    beyond = []
+    for name, figure in result.plot().items():
+        figure.canvas.draw()
+        ticks = {
+            label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels(which="both")
+        }
+        words = [
+            text for text in figure.findobj(Text) if text not in ticks and text.get_visible() and text.get_text()[-1:].isalpha()
+        ]
+        for text in words:
+            box = text.get_window_extent()
+            if min(box.x0, box.y0) < -BORDER or box.x1 > figure.bbox.x1 + BORDER or box.y1 > figure.bbox.y1 + BORDER:
+                beyond.append(f"{name}: {text.get_text()}")
+    return beyond

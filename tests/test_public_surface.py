@@ -24,11 +24,12 @@ from tactsim.shipped import shipped_cases
 
 # fmt: off
 NAMES = [
-    "Annulus", "Block", "Case", "ClosedForm", "Coulomb", "Ellipsoid", "Embedded", "Estimator", "Experiment", "Grasp",
-    "Inclusion", "Indentation", "InputError", "Material", "MooneyRivlin3", "NeoHookean", "Quantity", "Relaxation", "Result",
-    "RigidBody", "SensorFilm", "Specimen", "Sphere", "TactsimError", "TaxelLayout", "TimedIndentation", "Tube",
-    "choice", "close", "fit_relaxation", "fit_uniaxial", "kinds", "load_case", "load_data", "load_result", "log_uniform",
-    "material", "normal", "read_uniaxial_curve", "save_case", "sweep", "uniform",
+    "Annulus", "Block", "BoundaryValueProblem", "Case", "ClosedForm", "Coulomb", "Ellipsoid", "Embedded", "Estimator",
+    "Experiment", "Grasp", "Inclusion", "Indentation", "InputError", "Material", "MooneyRivlin3", "NeoHookean",
+    "Quantity", "Relaxation", "Result", "RigidBody", "SensorFilm", "Specimen", "Sphere", "TactsimError",
+    "TaxelLayout", "TimedIndentation", "Tube", "choice", "close", "fit_relaxation", "fit_uniaxial", "kinds",
+    "load_case", "load_data", "load_result", "log_uniform", "material", "normal", "read_uniaxial_curve", "save_case",
+    "sweep", "uniform",
 ]
 # fmt: on
 HEAVY = ("numpy", "scipy", "pydantic", "pint", "numba", "skfem", "matplotlib", "xarray", "pyvista", "zarr", "ruamel", "meshio")
@@ -146,6 +147,11 @@ def test_taxels_lie_in_their_places_and_steps_at_their_times(result: ts.Result) 
     assert "row" not in readings["taxel_force_upper_odd"].array.coords  # never places of another number of taxels
 
 
+def test_a_result_goes_through_its_names(result: ts.Result) -> None:
+    assert list(result) == list(result.quantities)
+    assert {name: result[name] for name in result} == result.quantities
+
+
 def test_the_history_is_a_dataset_with_units(result: ts.Result) -> None:
     history = result.history
     assert history["force"].attrs["units"] == "N"
@@ -240,6 +246,34 @@ def test_lengths_may_be_text_pint_or_si() -> None:
     assert ts.Sphere((20 * units.mm, "2 cm", 0.02), 4e3 * units.um) == ts.Sphere((0.02, 0.02, 0.02), 4e-3)
     case = ts.load_case("annulus_icf", {"experiment.recess": 0.4 * units.mm})
     assert case.experiment.recess == 0.4e-3
+    assert ts.Sphere([20, 20, 20] * units.mm, np.float32(0.5)) == ts.Sphere(np.full(3, 0.02), np.array(0.5))
+    assert ts.close(np.int64(1), 2 * units.s) == ts.close(1, 2)
+
+
+def test_a_quantity_of_a_result_is_a_value_of_a_case(result: ts.Result) -> None:
+    force = result["largest_force"].to("mN")
+    read = ts.kinds("body")["annulus"](inner_radius=ts.Quantity(1.5, "mm", "of a drawing"), outer_radius="3 mm")
+    assert read.inner_radius == 1.5e-3
+    with pytest.raises(ts.InputError, match=f"^Annulus: inner_radius: '{force.value} mN' has the wrong dimension"):
+        ts.Annulus(inner_radius=force)
+    with pytest.raises(ts.InputError, match=r"^Annulus: inner_radius: '3' has no unit; expected a length"):
+        ts.Annulus(inner_radius=3 * pint.UnitRegistry().dimensionless)
+
+
+def test_parts_that_are_built_in_python_stand_in_overrides_mappings_and_variations(tmp_path: Path) -> None:
+    rubber, ball = ts.NeoHookean(c10="3 kPa"), ts.Sphere((0.02, 0.02, 0.01), "3 mm")
+    case = ts.load_case("annulus_icf", {"experiment.specimen.material": rubber})
+    assert case.experiment.specimen.material == rubber
+    inclusions = [ts.Embedded(ball, "lump")]
+    assert ts.load_case("grasp_plain", {"experiment.inclusions": inclusions}).experiment.inclusions == tuple(inclusions)
+    press = ts.ClosedForm.example()
+    assert ts.load_case({"schema": "tactsim/case/1", "experiment": press}).experiment == press
+    varied = press.vary({"material": rubber, "outer_radius": ts.uniform(2e-3, np.float64(4e-3)), "thickness": 0.01, "points": 5})
+    data = ts.sweep(varied, samples=8, out=tmp_path / "annuli.zarr", workers=1, splits={"train": 0.5, "validation": 0.5})
+    assert ((data["outer_radius"] >= 2e-3) & (data["outer_radius"] <= 4e-3)).all()
+    weighted = press.vary({"outer_radius": ts.choice(2e-3, 4e-3, weights=(1, 0))})
+    data = ts.sweep(weighted, samples=8, out=tmp_path / "two.zarr", workers=1, splits={"train": 0.5, "validation": 0.5})
+    assert (data["outer_radius"] == 2e-3).all()
 
 
 @pytest.mark.parametrize(
@@ -284,6 +318,11 @@ def test_what_is_wrong_is_refused_in_the_words_of_a_file(make, words: str) -> No
         (lambda: ts.uniform("2 mm", "6 kg"), r"^uniform: '6 kg' has the wrong dimension; expected a length"),
         (lambda: ts.uniform("4 mm", "2 mm"), "uniform: .* must increase"),
         (lambda: ts.log_uniform(0, 1), "log_uniform: .* must be positive"),
+        (
+            lambda: ts.sweep(ts.ClosedForm.example(), out="x.zarr"),
+            r"^sweep: ClosedForm\(.* does not vary; expected experiment.vary",
+        ),
+        (lambda: ts.save_case(ts.NeoHookean.example(), "x.yaml"), r"^save_case: NeoHookean\(.* is neither a case nor an exp"),
     ],
 )
 def test_arguments_of_functions_are_refused_at_once(make, words: str) -> None:

@@ -18,11 +18,11 @@ from tactsim.case.overrides import apply_override, set_value
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
 from tactsim.errors import CaseError, InputError, StorageError, UnknownName, suggestion
+from tactsim.model import plain
 from tactsim.outside.files import LIMITS, TooLarge, Unreadable, opened
 from tactsim.outside.text import one_line
 from tactsim.refusals import as_written, value_at
 from tactsim.shipped import CASES, case_path, shipped_name
-from tactsim.units import written
 
 LONGEST_MESSAGE = 2000
 """Characters of what is told of one fault: a list of all that is allowed in its place may be long."""
@@ -74,7 +74,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
         If the file is missing or cannot be read.
     """
     if isinstance(path, Mapping):
-        path, document = "case", Document(written(path))
+        path, document = "case", Document(plain(path))
     else:
         path = case_path(path)
         document = _read_file(path)
@@ -85,7 +85,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
     for override, value in named:
         try:
             if isinstance(overrides, Mapping):
-                key_path = set_value(document, override.split("."), written(value))
+                key_path = set_value(document, override.split("."), plain(value))
             else:
                 key_path = apply_override(document, override)
         except YamlProblems as error:

@@ -13,6 +13,9 @@ from tactsim.materials.library import LIBRARY
 MATERIALS = " Names of materials: tactsim list materials."
 """Where a value is a shipped material by its name."""
 
+WORDS = {"dma": "DMA", "3d": "in 3D"}
+"""What parts of the name of a kind are in a title, where that is not the same."""
+
 
 def template(kind: str) -> str:
     """The text of a case file that runs as it is.
@@ -32,7 +35,7 @@ def template(kind: str) -> str:
         "# An editor completes the keys once that schema lies beside this file: tactsim schema --out case.schema.json",
         *_comment(about, ""),
         f"schema: {SCHEMA}",
-        f"title: {kind.replace('_', ' ').capitalize()}",
+        f"title: {_title(kind)}",
         "experiment:",
         f"  kind: {kind}",
     ]
@@ -47,6 +50,12 @@ def template(kind: str) -> str:
     for name in left:
         lines += ["", *_comment(described.get(name, ""), "  "), *(f"  #{line[2:]}" for line in _entry(name, every[name]))]
     return "\n".join(lines) + "\n"
+
+
+def _title(kind: str) -> str:
+    """A kind in words, such as ``Indentation in 3D``."""
+    title = " ".join(WORDS.get(part, part) for part in kind.split("_"))
+    return title[0].upper() + title[1:]
 
 
 def _names_material(value: Any) -> bool:

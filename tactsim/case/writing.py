@@ -11,7 +11,7 @@ from ruamel.yaml import YAML, RoundTripRepresenter
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from tactsim.case.model import Case
-from tactsim.errors import StorageError
+from tactsim.errors import InputError, StorageError, shown
 from tactsim.interfaces import Experiment, Material
 from tactsim.materials.library import LIBRARY
 from tactsim.outside.text import one_line
@@ -41,9 +41,13 @@ def save_case(case: Case | Experiment, path: str | Path, *, force: bool = False)
 
     Raises
     ------
+    InputError
+        If it is neither.
     StorageError
         If the file exists and ``force`` is not given, or it cannot be written.
     """
+    if not isinstance(case, Case | Experiment):
+        raise InputError(f"save_case: {shown(case)} is neither a case nor an experiment")
     place = Path(path)
     if place.exists() and not force:
         raise StorageError(f"{one_line(place)} exists; pass force=True to replace it")

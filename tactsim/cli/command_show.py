@@ -165,7 +165,7 @@ def _show_data_set(arguments: argparse.Namespace) -> int:
 
         drawings = card_figures(arguments.result)
         if not drawings:
-            raise InputError(f"{arguments.result} has no sample that is done, and so no figure")
+            raise InputError(f"{arguments.result} has no samples that are done and differ, and so no figure")
         replace_file(arguments.save, drawings[list(drawings)[-1]](form))
         console.out(f"figure {arguments.save}")
     return 0

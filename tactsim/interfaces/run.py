@@ -139,7 +139,8 @@ class Runnable(CaseKind):
         InputError
             If the kind has no body with a mesh, or something that the experiment names cannot be used.
         """
-        raise InputError(f"{self.kind}: nothing to show at rest; indentations and grasps have a body with a mesh")
+        meshed = "indentations, grasps and boundary value problems have a body with a mesh"
+        raise InputError(f"{self.kind}: nothing to show at rest; {meshed}")
 
     @final
     def at_rest(self) -> Result:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from tactsim.errors import CaseError, InvalidQuantity, shown, suggestion
-from tactsim.model import FrozenModel
+from tactsim.model import FrozenModel, plain
 from tactsim.units import written
 
 
@@ -81,11 +81,7 @@ def choice(*options: Any, weights: tuple[float, ...] | None = None) -> dict[str,
     if not options or (len(options) == 1 and isinstance(options[0], list | tuple)):
         given = f"{shown(options[0])} is one option" if options else "no option is given"
         raise InvalidQuantity(f"choice: {given}; give the options one by one, such as choice('2 mm', '4 mm')")
-    listed = [
-        one.model_dump(mode="json", context={"units": "written"}) if isinstance(one, FrozenModel) else written(one)
-        for one in options
-    ]
-    return _checked({"choice": listed} | ({} if weights is None else {"weights": list(weights)}))
+    return _checked({"choice": plain(options)} | ({} if weights is None else {"weights": list(weights)}))
 
 
 def check_places(experiment: FrozenModel, places: Mapping[str, Any]) -> None:

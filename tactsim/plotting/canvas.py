@@ -33,6 +33,8 @@ PRINTED_RESOLUTION = 240
 """In dots per inch, of what is dense and therefore a picture inside a vector file."""
 LONGEST_TITLE = 200
 """Characters; a case allows no longer title."""
+TITLE_MARGIN = 0.01
+"""Left and right of a title, over the width of the figure."""
 VECTOR = {"svg.fonttype": "none", "svg.hashsalt": "tactsim", "pdf.fonttype": 42}
 UNDATED = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}
 STYLE = {"font.size": 9.0, "axes.titlesize": 9.5, "axes.linewidth": 0.7, "legend.frameon": False, "lines.linewidth": 1.5}
@@ -95,9 +97,16 @@ def styled() -> AbstractContextManager[Any]:
 
 
 def entitle(figure: Figure, title: str, below: str = "", *, size: float = 11) -> None:
-    """Writes a title above a figure letter by letter, what a user wrote is no TeX, and a second line below it."""
+    """Writes a title above a figure letter by letter, what a user wrote is no TeX, and a second line below it.
+
+    What is wider than the figure goes on in a new line.
+    """
     lines = [one_line(line, LONGEST_TITLE) for line in (title, below) if line]
-    figure.suptitle("\n".join(lines), x=0.01, ha="left", fontsize=size, fontweight="bold", parse_math=False)
+    text = figure.suptitle("\n".join(lines), x=TITLE_MARGIN, ha="left", fontsize=size, fontweight="bold", parse_math=False)
+    room = (1 - 2 * TITLE_MARGIN) * figure.bbox.width / max(text.get_window_extent().width, 1.0)
+    if room < 1:
+        letters = int(room * max(map(len, lines)))
+        text.set_text("\n".join("\n".join(textwrap.wrap(line, letters)) for line in lines))
 
 
 @contextmanager

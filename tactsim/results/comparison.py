@@ -88,16 +88,20 @@ def compared(results: Mapping[str, Result], unit_of: UnitOf, name_of: NameOf = l
 
 
 def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf, name_of: NameOf) -> dict[str, tuple[str, ...]]:
-    """Values of the cases, by key and unit, that are not the same in all results; empty where a case has no such key."""
+    """Values of the cases, by key and unit, that are not the same in all results; empty where a case has no such key.
+
+    A key that has another unit in a case of another kind, as that of a force and of a displacement, has a row for each.
+    """
     experiments = [result.provenance.get("case", {}).get("experiment", {}) for result in results.values()]
     cases = [dict(_leaves(experiment, (), name_of)) for experiment in experiments]
     differing: dict[str, tuple[str, ...]] = {}
     for path in dict.fromkeys(path for case in cases for path in case):
         values = [case.get(path) for case in cases]
         if len(set(map(_text, values))) > 1:
-            unit = next(unit_of(one, path) for one, case in zip(experiments, cases, strict=True) if path in case)
-            name = ".".join(map(str, path))
-            differing |= dict([_in_unit(name, values, unit)])
+            units = [unit_of(one, path) if path in case else None for one, case in zip(experiments, cases, strict=True)]
+            for unit in dict.fromkeys(unit for unit in units if unit is not None):
+                of_unit = [value if one == unit else None for value, one in zip(values, units, strict=True)]
+                differing |= dict([_in_unit(".".join(map(str, path)), of_unit, unit)])
     return differing
 
 

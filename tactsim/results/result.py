@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from enum import StrEnum
 from pathlib import Path
@@ -123,6 +123,9 @@ class Result:
 
     def __contains__(self, name: object) -> bool:
         return name in self.quantities
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.quantities)
 
     def __eq__(self, other: object) -> bool:
         """Whether every number, text and field is the same to the last bit; times that a run took count too."""

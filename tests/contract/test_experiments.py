@@ -13,7 +13,7 @@ import jsonschema
 import numpy as np
 import pytest
 from ruamel.yaml import YAML
-from scenes import unmarked_figures
+from scenes import cut_words, unmarked_figures
 
 from tactsim.case.json_schema import case_json_schema
 from tactsim.case.loading import load_case
@@ -134,3 +134,4 @@ def test_the_example_runs_and_is_drawn(kind: str, tmp_path: Path, monkeypatch: p
     drawings = figures_for(result)
     assert all(np.frombuffer(draw()[:8], np.uint8).tobytes() == b"\x89PNG\r\n\x1a\n" for draw in drawings.values())
     assert unmarked_figures(result) == []
+    assert cut_words(result) == []

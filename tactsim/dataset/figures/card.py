@@ -25,7 +25,7 @@ FIGURE_FILES = (SPREAD, TAXELS)
 
 
 def card_figures(store: str | Path) -> dict[str, Plot]:
-    """File name -> drawing; empty for a data set without a sample that is done.
+    """File name -> drawing; empty for a data set without a sample that is done, or in which nothing differs.
 
     Raises
     ------
@@ -35,7 +35,8 @@ def card_figures(store: str | Path) -> dict[str, Plot]:
     data = load(store)
     if not data.sizes["sample"]:
         return {}
-    drawings: dict[str, Plot] = {SPREAD: Plot(lambda: spread(_numbers(data)))}
+    numbers = _numbers(data)
+    drawings: dict[str, Plot] = {SPREAD: Plot(lambda: spread(numbers))} if numbers else {}
     if TAXEL_FORCE in data:
         drawings[TAXELS] = Plot(lambda: taxels(data[TAXEL_FORCE].values[:, -1].mean(axis=0)))
     return drawings

@@ -18,15 +18,20 @@ from tactsim.dataset.sampling.settings import SCHEMA
 from tactsim.dataset.sampling.sweep import SECTION, Sweep, sweep_of_document
 from tactsim.dataset.store.files import FIGURES
 from tactsim.dataset.use.card import adopt_earlier_files, write_card
-from tactsim.errors import CaseError, InputError
+from tactsim.errors import CaseError, InputError, shown
 from tactsim.interfaces.variation import Variation
+from tactsim.model import plain
 from tactsim.outside.text import one_line
 from tactsim.progress import count_bar
+from tactsim.refusals import unit_at
 from tactsim.registry import kinds_outside
 from tactsim.storage.own_files import ForeignFile, OwnFiles
 
 if TYPE_CHECKING:
     import xarray
+
+COUNTED = ("weights", "integer", "range")
+"""What a distribution has that is no value of the place, or not alone."""
 
 
 def sweep(
@@ -63,7 +68,8 @@ def sweep(
     CaseError
         If a place, a distribution or a setting is wrong.
     InputError
-        If the experiment, or what it is made of, is of a class that a worker process cannot load, or there are no workers.
+        If nothing varies, the experiment, or what it is made of, is of a class that a worker process cannot load, or there are no
+        workers.
     StorageError
         If the place is taken or cannot be written.
     """
@@ -91,10 +97,13 @@ def sweep(
 
 
 def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Sweep:
+    if not isinstance(variation, Variation):
+        raise InputError(f"sweep: {shown(variation)} does not vary; expected experiment.vary({{'key.path': uniform(low, high)}})")
     document = Document(case_document(variation.experiment, complete=True) | {"title": title, "schema": SCHEMA})
     try:
         for place, distribution in variation.places.items():
-            set_value(document, ["experiment", *place.split(".")], distribution)
+            keys = place.split(".")
+            set_value(document, ["experiment", *keys], _with_units(plain(distribution), variation.experiment, keys))
     except YamlProblems as error:
         raise CaseError(f"vary: {error}") from None
     document.value[SECTION] = settings
@@ -114,6 +123,22 @@ def _kinds_in(value: Any) -> Iterator[str]:
     if isinstance(value, list | tuple):
         for item in value:
             yield from _kinds_in(item)
+
+
+def _with_units(distribution: Any, experiment: Any, keys: list[str]) -> Any:
+    """A value or a distribution of a place, its plain numbers in SI as everywhere in Python, with the unit that the place has."""
+    path = tuple(int(key) if key.isdecimal() else key for key in keys)
+    if not (unit := unit_at(type(experiment), experiment.model_dump(mode="json"), path)):
+        return distribution
+    if not isinstance(distribution, dict):
+        return _in_si(distribution, unit)
+    return {name: entries if name in COUNTED else _in_si(entries, unit) for name, entries in distribution.items()}
+
+
+def _in_si(value: Any, unit: str) -> Any:
+    if isinstance(value, list):
+        return [_in_si(one, unit) for one in value]
+    return f"{value!r} {unit}" if type(value) in (int, float) else value
 
 
 def compute(run: SweepRun, executor: Executor, progress: Callable[[Tally], None]) -> bool:

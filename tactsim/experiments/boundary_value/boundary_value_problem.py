@@ -12,7 +12,7 @@ from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.experiments.boundary_value.setup import RECORDED, BoundaryValueSetup
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course
+from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 
@@ -22,7 +22,22 @@ def _history_units(problem: BoundaryValueProblem) -> dict[str, str]:
 
 
 class BoundaryValueProblem(BoundaryValueSetup, Experiment):
-    """A body of a simple shape under what is prescribed on its faces, and the numbers that are asked of it."""
+    """A body of a simple shape under what is prescribed on its faces, and the numbers that are asked of it.
+
+    >>> import tactsim as ts
+    >>> disc = ts.BoundaryValueProblem(
+    ...     dimension="axisymmetric",
+    ...     geometry={"kind": "cylinder", "radial": [{"length": "5 mm", "cells": 1}], "axial": [{"length": "4 mm", "cells": 1}]},
+    ...     material=ts.NeoHookean(c10="10 kPa"),
+    ...     conditions=[
+    ...         {"kind": "displacement", "face": "bottom", "z": 0.0},
+    ...         {"kind": "displacement", "face": "top", "z": "-1 mm"},
+    ...     ],
+    ...     asked={"force": {"kind": "force", "face": "top", "component": "z"}},
+    ... )
+    >>> f"{disc.run()['force'].to('N'):.3f}"  # pi r^2 2 c10 (l - 1 / l^2) at the stretch l = 3/4
+    '-1.614 N'
+    """
 
     kind: Literal["boundary_value_problem"] = "boundary_value_problem"
 
@@ -52,6 +67,12 @@ class BoundaryValueProblem(BoundaryValueSetup, Experiment):
         from tactsim.experiments.boundary_value.record import boundary_value_course
 
         return boundary_value_course(self)
+
+    def unloaded(self) -> Findings:
+        """The body, and the rigid bodies at first touch."""
+        from tactsim.experiments.boundary_value.record import unloaded_problem
+
+        return unloaded_problem(self)
 
     def doubts(self) -> list[str]:
         """Whether nothing but rigid bodies holds the body against some motion."""

@@ -6,13 +6,22 @@ from typing import Any, Literal
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.collections import PolyCollection
+from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.figure import Figure
 
 from tactsim.array import Array
-from tactsim.experiments.boundary_value.scene import BoundaryValueScene
+from tactsim.contact.turned import Turned
+from tactsim.experiments.boundary_value.asked import place_in_words
+from tactsim.experiments.boundary_value.conditions import AnyCondition, PointCondition
+from tactsim.experiments.boundary_value.parts import Parts
+from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
+from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
+from tactsim.interfaces import Drawing
 from tactsim.plotting.canvas import (
     PRESSURE_COLOURS,
+    REGION_COLOURS,
+    SKETCH,
+    Plot,
     SingleFigure,
     despined,
     extension,
@@ -25,8 +34,13 @@ from tactsim.results import FieldFrame, Result
 from tactsim.results.fields import DISPLACEMENT, VON_MISES
 from tactsim.units import format_quantity
 
+TITLE = "Boundary value problem"
 VIEW = np.array([0.55, -0.75, 0.40])
 """Direction from a body in space to the eye."""
+UNITS = {"displacement": "m", "point": "m", "rotation": "rad", "pressure": "Pa", "traction": "Pa", "force": "N"}
+"""Of what a condition prescribes, by its kind."""
+RIGID_COLOUR, GRID = "#c8ccd2", 250
+"""Of a rigid body, and the points per direction on which its outline is traced."""
 MOST_CURVES = 6
 """Curves in the second panel."""
 ALIKE = 5e-3
@@ -40,16 +54,89 @@ class BoundaryValueFigures(SingleFigure):
 
     kind: Literal["boundary_value_problem"] = "boundary_value_problem"
 
+    def drawings(self, result: Result) -> dict[str, Drawing]:
+        """The one figure, or of what is at rest a sketch."""
+        return {SKETCH: Plot(lambda: sketch_figure(result))} if result.at_rest else super().drawings(result)
+
     def figure(self, result: Result) -> Figure:
         """The deformed body of the last frame, if there is one, and the numbers that were asked for over time."""
         scene, body = result.scene_as(BoundaryValueScene), bool(result.frames)
         where = f" at {format_quantity(result.steps[-1].values['time'], 's')}"
-        with result_figure(result, (10.0 if body else 6.0, 4.2), "Boundary value problem", where=where) as figure:
+        with result_figure(result, (10.0 if body else 6.0, 4.2), TITLE, where=where) as figure:
             axes = figure.subplots(1, 1 + body, squeeze=False, width_ratios=(1.2, 1) if body else None)[0]
             if body:
                 draw_body(axes[0], result.frames[-1], scene.dimension)
             draw_course(axes[-1], result, scene)
         return figure
+
+
+def sketch_figure(result: Result) -> Figure:
+    """The body at rest with its mesh, the faces on which something is prescribed, and the rigid bodies at first touch."""
+    scene, frame = result.scene_as(BoundaryValueScene), result.frames[-1]
+    flat = scene.dimension != "3d"
+    with result_figure(result, (8.5, 4.6), TITLE) as figure:
+        axis = figure.add_subplot()
+        places = 1e3 * frame.points
+        shown = places[:, :2] if flat else _projected(places)
+        faces = frame.cells["triangle6"] if flat else _outside(frame, places)[0]
+        style: dict[str, Any] = {"facecolors": REGION_COLOURS[0], "edgecolors": "0.6", "linewidths": 0.4}
+        axis.add_collection(PolyCollection(list(shown[faces[:, :3]]), **style))
+        axis.autoscale_view()
+        axis.margins(0.12)
+        if isinstance(result.experiment, BoundaryValueSetup):
+            _draw_conditions(axis, result.experiment)
+        for number, touching in enumerate(scene.touching, 1):
+            if flat:
+                _draw_rigid(axis, touching)
+            axis.plot([], [], "s", color=RIGID_COLOUR, label=f"rigid body {number}: {touching.body.kind}")
+        axis.set_title(f"at rest: {scene.solver.size_in_words}", loc="left")
+        _framed(axis, scene.dimension)
+        if axis.get_legend_handles_labels()[1]:
+            figure.legend(loc="outside right center", fontsize=8)
+    return figure
+
+
+def _draw_conditions(axis: Axes, problem: BoundaryValueSetup) -> None:
+    """The faces and points on which something is prescribed, each with its words in the legend."""
+    parts, flat = Parts.of(problem.geometry, problem.dimension), problem.dimension != "3d"
+    nodes = 1e3 * parts.domain.mesh.nodes
+    shown = nodes if flat else _projected(nodes)
+    for number, condition in enumerate(problem.conditions):
+        words, colour = _in_words(condition), f"C{number % 10}"
+        if isinstance(condition, PointCondition):
+            axis.plot(*shown[parts.node(condition.at)], "o", color=colour, label=words)
+            continue
+        facets = parts.facets(condition)
+        if flat:
+            drawn: Any = LineCollection(list(shown[facets[:, [0, 2, 1]]]), colors=colour, linewidths=3, label=words)
+        else:
+            style: dict[str, Any] = {"facecolors": colour, "alpha": 0.5, "edgecolors": colour, "linewidths": 0.4}
+            drawn = PolyCollection(list(shown[facets[_facing(nodes[facets[:, :3]])][:, :3]]), label=words, **style)
+        axis.add_collection(drawn, autolim=False)
+
+
+def _in_words(condition: AnyCondition) -> str:
+    """Where a condition acts and what it prescribes, at a factor of one."""
+    kind, where = condition.kind, getattr(condition, "face", None)
+    sizes = {name: getattr(condition, name, None) for name in ("x", "y", "z", "r", "angle", "pressure")}
+    given = [
+        (f"{name} = " if len(name) == 1 else "") + format_quantity(size, UNITS[kind])
+        for name, size in sizes.items()
+        if size is not None
+    ]
+    place = f"point {place_in_words(condition.at)}" if isinstance(condition, PointCondition) else str(where)
+    return f"{place}: {' '.join([kind.replace('point', 'displacement'), ', '.join(given)]).strip()}"
+
+
+def _draw_rigid(axis: Axes, touching: TouchingBody) -> None:
+    """A rigid body in the plane, filled from its signed distance within the picture."""
+    (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
+    x, y = np.meshgrid(np.linspace(left, right, GRID), np.linspace(bottom, top, GRID))
+    body = Turned.of(touching.body, touching.axis)
+    points = 1e-3 * np.array([x.ravel(), y.ravel()]) - np.array(touching.place)[:, None]
+    distance = body.signed_distance(points)[0].reshape(x.shape)
+    axis.contourf(x, y, distance, levels=[-np.inf, 0.0], colors=[RIGID_COLOUR], zorder=3)
+    axis.set(xlim=(left, right), ylim=(bottom, top))
 
 
 def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
@@ -69,8 +156,13 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
     bar.set_label(f"von Mises stress in {unit}")
     bar.outline.set_linewidth(0.5)
     axis.autoscale_view()
-    axis.set_aspect("equal")
     axis.set_title(f"deformed, at {format_quantity(frame.time, 's')}", loc="left")
+    _framed(axis, dimension)
+
+
+def _framed(axis: Axes, dimension: str) -> None:
+    """Names the axes of a section; a body in space has none."""
+    axis.set_aspect("equal")
     if dimension == "3d":
         axis.set_axis_off()
     else:
@@ -129,11 +221,24 @@ def _surface(frame: FieldFrame, places: Array) -> tuple[Array, Array]:
     outside = first[count == 1]
     triangles = faces[outside][:, QUARTERS].reshape(-1, 3)
     owners = np.repeat(outside // len(FACES), len(QUARTERS))
-    corners = places[triangles]
+    seen = _facing(places[triangles])
+    return triangles[seen], owners[seen]
+
+
+def _outside(frame: FieldFrame, places: Array) -> tuple[Array, Array]:
+    """Faces (k, 6) of the surface that face the eye, the farthest first, and their elements (k,)."""
+    faces = frame.cells["tetra10"][:, FACES].reshape(-1, 6)
+    _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
+    outside = first[count == 1]
+    seen = outside[_facing(places[faces[outside, :3]])]
+    return faces[seen], seen // len(FACES)
+
+
+def _facing(corners: Array) -> Array:
+    """Indices of those of the triangles with corners (k, 3, 3) that face the eye, the farthest first."""
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     seen = np.flatnonzero(normal @ VIEW > 0)
-    seen = seen[np.argsort(corners[seen].mean(axis=1) @ VIEW)]
-    return triangles[seen], owners[seen]
+    return seen[np.argsort(corners[seen].mean(axis=1) @ VIEW)]
 
 
 def _projected(places: Array) -> Array:

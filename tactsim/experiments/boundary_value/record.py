@@ -7,13 +7,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from tactsim.errors import InputError
+from tactsim.experiments.boundary_value.conditions import SIDES
 from tactsim.experiments.boundary_value.posing import PosedProblem, posed
 from tactsim.experiments.boundary_value.probes import Probes
-from tactsim.experiments.boundary_value.scene import BoundaryValueScene
+from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.fem.assembly.material_forms import interpreted_warnings
 from tactsim.fem.paths.time_steps import TimeControl
-from tactsim.interfaces.run import Course
+from tactsim.interfaces.run import Course, Findings
 from tactsim.mechanics.models.loaded_body import LoadedBody
 from tactsim.mechanics.outcome.contact_history import LAST
 from tactsim.mechanics.outcome.contact_record import (
@@ -64,6 +65,24 @@ def boundary_value_course(problem: BoundaryValueSetup) -> Course:
     InputError
         If a condition names what the body has not.
     """
+    path, record = _begun(problem)
+    return Course((record.accept(state) for state, _ in path.states()), record.findings, setup_is_timed=True)
+
+
+def unloaded_problem(problem: BoundaryValueSetup) -> Findings:
+    """The body, and the rigid bodies at first touch.
+
+    Raises
+    ------
+    InputError
+        If a condition names what the body has not.
+    """
+    path, record = _begun(problem)
+    return record.unloaded(path.start)
+
+
+def _begun(problem: BoundaryValueSetup) -> tuple[TimedPath, BoundaryValueRecord]:
+    """The path of a problem at its start, and what will record it."""
     try:
         model = posed(problem)
         probes = Probes(problem, model)
@@ -79,9 +98,7 @@ def boundary_value_course(problem: BoundaryValueSetup) -> Course:
     course = smooth_intervals(histories, problem.duration)
     start = TimedState.at_rest(model.model.body, model.model.at_rest(), len(histories))
     path = TimedPath(model.model, AskedTimes(policy, times), course, start)
-    record = BoundaryValueRecord(problem, model, probes, path)
-    steps = (record.accept(state) for state, _ in path.states())
-    return Course(steps, record.findings, setup_is_timed=True)
+    return path, BoundaryValueRecord(problem, model, probes, path)
 
 
 def _time_reached(step: StepRecord) -> str:
@@ -173,10 +190,19 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
             ),
         ]
 
+    def _touching(self) -> tuple[TouchingBody, ...]:
+        """The rigid bodies where they first touch."""
+        sides = SIDES[self.problem.dimension]
+        together = zip(self.problem.contacts, self.model.conditions.contacts, strict=True)
+        return tuple(
+            TouchingBody(body=one.body, axis=sides[one.side], place=tuple(moved.posed.place.tolist())) for one, moved in together
+        )
+
     def scene(self) -> BoundaryValueScene:
         """What the figure reads."""
         return BoundaryValueScene(
             dimension=self.problem.dimension,
             asked={name: one.unit for name, one in self.problem.asked.items()},
+            touching=self._touching(),
             solver=solver_report(self),
         )

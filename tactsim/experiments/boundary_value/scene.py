@@ -2,9 +2,23 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import Annotated, Literal
 
+from tactsim.interfaces import RigidBody
+from tactsim.model import FrozenModel
+from tactsim.registry import Registered
 from tactsim.results.scene import Scene, SolverReport
+
+
+class TouchingBody(FrozenModel):
+    """A rigid body at first touch."""
+
+    body: Annotated[RigidBody, Registered(RigidBody)]
+    """The body in its own axes."""
+    axis: tuple[float, ...]
+    """Unit vector from the tissue to the body."""
+    place: tuple[float, ...]
+    """Its reference point in m."""
 
 
 class BoundaryValueScene(Scene):
@@ -15,5 +29,7 @@ class BoundaryValueScene(Scene):
     """Of the model."""
     asked: dict[str, str]
     """Unit of each number that is asked for, by its name."""
+    touching: tuple[TouchingBody, ...] = ()
+    """The rigid bodies, in the order of the case."""
     solver: SolverReport
     """What the solution took."""

@@ -6,10 +6,18 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
+import numpy as np
+
 from tactsim.analytic.annular_area import annular_area
 from tactsim.experiments.indentation.comparison import Comparison
 from tactsim.experiments.indentation.history import SPACE, THRESHOLD, UNITS
-from tactsim.experiments.indentation.scene import Indentation3dScene, IndentationScene, PressedBodyScene, TimedIndentationScene
+from tactsim.experiments.indentation.scene import (
+    ContactProfile,
+    Indentation3dScene,
+    IndentationScene,
+    PressedBodyScene,
+    TimedIndentationScene,
+)
 from tactsim.experiments.indentation.setup import IndentationSetup, Timed
 from tactsim.materials.library import set_with_constants_of
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
@@ -199,7 +207,22 @@ class IndentationRecord(ContactRecord[PressedModel]):
             return Indentation3dScene(**self._pressed(), symmetry=symmetry, offset=self._posed.offset)
         if self._clock is not None:
             return TimedIndentationScene(**self._pressed(), control=self._clock.loading.control, compare=self._clock.compare)
-        return IndentationScene(**self._pressed())
+        return IndentationScene(**self._pressed(), contact=self._contact())
+
+    def _contact(self) -> ContactProfile | None:
+        """The contact pressure of the body along the surface of a section at the last kept state."""
+        model, state = max(self._kept.values(), key=lambda kept: kept[1].time)
+        contact = state.contact.contacts[0]
+        displacement = model.displacement(state.contact.unknowns)
+        weights, edges = model.points.weights, (-1, model.points.per_facet)
+        area = weights.reshape(edges).sum(axis=1)
+        at_points = (model.reference + displacement)[0], contact.at(displacement).pressure
+        radius, pressure = ((weights * values).reshape(edges).sum(axis=1) / area for values in at_points)
+        if not pressure.any():
+            return None
+        order = np.argsort(radius)
+        columns = {"radius": radius, "pressure": pressure, "area": area}
+        return ContactProfile(**{name: tuple(values[order].tolist()) for name, values in columns.items()})
 
     def _pressed(self) -> dict[str, Any]:
         """What every scene of a pressed body has, by name."""

@@ -6,6 +6,7 @@ from typing import Annotated, Literal
 
 from tactsim.contact.tilted import Tilted
 from tactsim.interfaces import RigidBody
+from tactsim.model import FrozenModel
 from tactsim.registry import Registered
 from tactsim.results.scene import Scene, SolverReport
 
@@ -23,10 +24,23 @@ class PressedBodyScene(Scene):
     """What the solution took."""
 
 
+class ContactProfile(FrozenModel):
+    """The contact pressure on every edge of an element at the tissue's surface, from the axis outwards."""
+
+    radius: tuple[float, ...]
+    """Mean deformed radius in m."""
+    pressure: tuple[float, ...]
+    """Mean force per undeformed area in Pa; from point to point within an edge it varies more than the mesh resolves."""
+    area: tuple[float, ...]
+    """Undeformed area in m^2 that the edge sweeps."""
+
+
 class IndentationScene(PressedBodyScene):
     """An elastic indentation of a section."""
 
     kind: Literal["indentation"] = "indentation"
+    contact: ContactProfile | None = None
+    """Of the body at the last kept state; null where it does not touch."""
 
 
 class TimedIndentationScene(PressedBodyScene):

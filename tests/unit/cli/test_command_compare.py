@@ -114,3 +114,18 @@ def test_numbers_of_other_kinds_leave_gaps() -> None:
     assert [column.name for column in comparison.differing] == ["one", "two"], "what five digits do not tell apart is the same"
     assert "| one [kPa] | 2 |  |" in comparison.markdown_text()
     assert InputError.exit_code == 2
+
+
+def test_a_key_that_has_another_unit_in_another_kind_has_a_row_for_each() -> None:
+    def result(kind: str, to: float) -> Result:
+        case = {"experiment": {"kind": kind, "to": to}}
+        return Result(kind=kind, status=Status.CONVERGED, reason="", provenance={"case": case})
+
+    units = {"pulled": "N", "moved": "m"}
+    results = {"one": result("pulled", 0.2), "other": result("moved", 1e-3), "third": result("moved", 2e-3)}
+    comparison = compared(results, lambda experiment, path: units[experiment["kind"]] if path == ("to",) else "")
+    assert comparison.inputs == {
+        "kind": ("pulled", "moved", "moved"),
+        "to [mN]": ("200", "", ""),
+        "to [mm]": ("", "1", "2"),
+    }

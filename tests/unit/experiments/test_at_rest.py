@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from matplotlib.collections import LineCollection
 
+from tactsim.case.loading import load_case
 from tactsim.case.model import Case
 from tactsim.errors import InputError
 from tactsim.fem.equilibrium.newton import Problem
@@ -19,7 +21,7 @@ def at_rest(kind: str) -> Case:
     return Case(schema="tactsim/case/1", title="A design", experiment=kind_class(Experiment, kind).example())
 
 
-@pytest.mark.parametrize("kind", ["indentation", "indentation_3d", "timed_indentation", "grasp"])
+@pytest.mark.parametrize("kind", ["indentation", "indentation_3d", "timed_indentation", "grasp", "boundary_value_problem"])
 def test_nothing_is_solved_and_the_sketch_is_the_only_figure(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Problem, "solve", lambda *_, **__: pytest.fail("solved"))
     result = at_rest(kind).at_rest()
@@ -55,6 +57,27 @@ def test_doubts_are_told() -> None:
     wide = case.experiment.model_copy(update={"block": case.experiment.block.model_copy(update={"size": (0.02, 0.02, 0.02)})})
     assert wide.doubts()
     assert set(wide.doubts()) <= set(wide.at_rest().warnings)
+
+
+def test_what_acts_on_a_body_stands_in_its_sketch() -> None:
+    case = load_case("published_plate_on_plane")
+    figure = case.at_rest().plot("sketch")
+    (legend,) = figure.legends
+    assert [text.get_text() for text in legend.get_texts()] == [
+        "right: displacement x = 0 m",
+        "point (40 mm, 0 m): displacement x = 0 m, y = 0 m",
+        "top: pressure 50 MPa",
+        "left: pressure 150 MPa",
+        "rigid body 1: plane",
+    ]
+    marked = [one for one in figure.axes[0].collections if isinstance(one, LineCollection)]
+    ends = [np.concatenate([path.vertices for path in one.get_paths()]) for one in marked]
+    assert [set(np.round(places[:, axis], 9)) for places, axis in zip(ends, (0, 1, 0), strict=True)] == [{40.0}, {40.0}, {0.0}]
+    figure.canvas.draw()
+    title = figure._suptitle.get_window_extent()
+    assert not title.overlaps(legend.get_window_extent())
+    turned = load_case("published_torsion").at_rest().plot("sketch")
+    assert [text.get_text() for text in turned.legends[0].get_texts()] == ["bottom: rotation 0 rad", "top: rotation 45°"]
 
 
 def test_a_kind_without_a_mesh_has_nothing_to_show() -> None:

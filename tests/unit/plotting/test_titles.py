@@ -26,6 +26,17 @@ def test_a_title_of_two_lines_has_two_lines() -> None:
     assert figure.get_suptitle() == "Switch probe\nForce over depth\\t"
 
 
+def test_a_title_that_is_wider_than_its_figure_goes_on_in_a_new_line() -> None:
+    figure = new_figure(4, 3)
+    words = "The strongest place reads more than the reference, which is beyond four deviations"
+    entitle(figure, words, "Below")
+    figure.canvas.draw()
+    text = figure._suptitle
+    assert text.get_text().split() == [*words.split(), "Below"]
+    assert text.get_text().endswith("\nBelow")
+    assert text.get_window_extent().x1 <= figure.bbox.x1
+
+
 def test_the_table_of_a_confusion_is_a_figure() -> None:
     classes = ("nothing", "lump")
     result = Result(

@@ -10,7 +10,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import FuncFormatter, NullFormatter
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 from scipy.interpolate import RectBivariateSpline
 
 from tactsim.array import Array
@@ -26,6 +26,8 @@ RIM = 1.25
 """Hatched part beyond the end of linear theory, over that end."""
 FINE, FEWEST = 200, 4
 """Points of a fine map along each side, and the fewest of a map that cubic splines take."""
+ABOVE_POINT = 0.17
+"""Height, as a part of the panel, above the words of the design point."""
 DECADES = 4
 """Decades of the force that are coloured below the largest one."""
 
@@ -59,7 +61,8 @@ class AnnulusDesignFigures(SingleFigure):
             bar = figure.colorbar(drawn, ax=list(axes), pad=0.01, aspect=30, extend=extend)
             bar.set_label("constant force with which the tissue touches, in N")
             bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            figure.legend(handles=_legend(result), loc="outside lower left", ncols=2, fontsize=8)
+            columns = 2 if len(shown) > 1 else 1
+            figure.legend(handles=_legend(result), loc="outside lower left", ncols=columns, fontsize=8)
         return figure
 
 
@@ -79,8 +82,9 @@ def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
         hatched.set_linewidth(0)
         axis.contour(*fine, levels=[np.log(end)], colors="white", linewidths=1.4, linestyles="dashed")
     elif relative.min() >= end:
-        axis.text(0.03, 0.03, "all outside small-displacement theory", transform=axis.transAxes, color="w", fontsize=8)
+        axis.text(0.03, ABOVE_POINT, "all outside small-displacement theory", transform=axis.transAxes, color="w", fontsize=8)
     axis.set_yscale("log")
+    axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.yaxis.set_minor_formatter(NullFormatter())
     return drawn
@@ -98,7 +102,9 @@ def _finer(ratio: Array, recess: Array, values: Array) -> tuple[Array, Array, Ar
 def _draw_point(axis: Axes, result: Result, time: float) -> None:
     """The design point; with its own force to touch where the time is its own."""
     point = result.scene_as(AnnulusDesignScene).design_point
-    axis.plot(point.ratio, 1e3 * point.recess, "*", color=POINT_COLOUR, markeredgecolor="white", markersize=13, zorder=5)
+    axis.plot(
+        point.ratio, 1e3 * point.recess, "*", color=POINT_COLOUR, markeredgecolor="white", markersize=13, zorder=5, clip_on=False
+    )
     if time != point.time:
         return
     needed, rise = (_three_digits(result, name) for name in ("point_force_to_touch", "point_rise"))
@@ -134,7 +140,5 @@ def _legend(result: Result) -> list[Any]:
     point = scene.design_point
     where = f"ri/ro = {point.ratio:g}, L = {format_quantity(point.recess, 'm')}"
     star = Line2D([], [], linestyle="none", marker="*", color=POINT_COLOUR, markersize=11, label=f"design point, {where}")
-    words = (
-        f"above the dashed line: displacement at touch beyond {scene.small_displacement:g} ro, outside small-displacement theory"
-    )
-    return [*lines, star, Patch(facecolor="0.6", edgecolor="white", hatch="///", label=words)]
+    end = f"above the dashed line: displacement at touch beyond {scene.small_displacement:g} ro, not small"
+    return [*lines, star, Patch(facecolor="0.6", edgecolor="white", hatch="///", label=end)]

@@ -25,7 +25,7 @@ class DurometerFigures(SingleFigure):
 
     def figure(self, result: Result) -> Figure:
         """Section (if the result has fields) and forces over the depth."""
-        return section_beside(result, _draw_balance, "Durometer")
+        return section_beside(result, [_draw_balance], "Durometer")
 
 
 def _draw_balance(axis: Axes, result: Result) -> None:

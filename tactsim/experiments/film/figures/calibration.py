@@ -96,7 +96,7 @@ def _draw_limit(axis: Axes, limit: float) -> None:
     """A limit of linearity in percent, with its number at the right."""
     axis.axhline(limit, color=LIMIT_COLOUR, linewidth=1, linestyle="--")
     axis.annotate(
-        f"{limit:+.2f} %",
+        f"{limit:+.3g} %",
         (1.0, limit),
         xycoords=("axes fraction", "data"),
         xytext=(3, 0),

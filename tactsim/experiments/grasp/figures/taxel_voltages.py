@@ -19,6 +19,8 @@ from tactsim.results import Result
 VOLTAGES = "taxel_voltages.png"
 MOST_NAMED = 16
 """Taxels of a matrix up to which each curve is named."""
+MOST_DOTTED = 40
+"""Solved steps up to which each is drawn as a dotted line: more would be a grey ground."""
 READ, APPLIED = "#1f4e79", "#b8540a"
 
 
@@ -43,7 +45,8 @@ def voltages_figure(result: Result) -> Figure:
             _draw_voltages(row[0], result, factor * voltages[:, jaw])
             _draw_forces(row[1], applied[jaw], read[jaw])
             row[0].set_ylabel(f"voltage in {unit}")
-            row[0].set_title(f"{side} jaw; straight between the {len(result.steps)} solved steps (dotted)", loc="left")
+            dotted = " (dotted)" if len(result.steps) <= MOST_DOTTED else ""
+            row[0].set_title(f"{side} jaw; straight between the {len(result.steps)} solved steps{dotted}", loc="left")
         axes[1, 0].set_xlabel("time in s")
         axes[1, 1].set_xlabel("taxel, row and column")
         axes[0, 1].set_ylim(top=1.18 * axes[0, 1].get_ylim()[1])  # room for the legend above the bars
@@ -59,7 +62,7 @@ def _draw_voltages(axis: Axes, result: Result, voltage: Array) -> None:
     for (row, column), colour in zip(np.ndindex(rows, columns), colours, strict=True):
         style = ("-", "--", "-.", ":")[column % 4]
         axis.plot(time, voltage[:, row, column], style, color=colour, linewidth=1.0, label=f"{row + 1},{column + 1}")
-    for moment in result.history_values("time"):
+    for moment in result.history_values("time") if len(result.steps) <= MOST_DOTTED else ():
         axis.axvline(moment, color="0.6", linewidth=0.7, linestyle=":", zorder=0)
     if rows * columns <= MOST_NAMED:
         axis.legend(loc="upper left", ncols=3, title="row, column", fontsize=7, title_fontsize=7)

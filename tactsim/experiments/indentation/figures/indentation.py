@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import numpy as np
@@ -13,11 +13,22 @@ from tactsim.array import Array
 from tactsim.experiments.indentation.figures.contact_section import SENSOR_COLOUR, draw_contact_section
 from tactsim.experiments.indentation.scene import IndentationScene, PressedBodyScene
 from tactsim.interfaces import Drawing
-from tactsim.plotting.canvas import FAILED_COLOUR, SKETCH, Plot, SingleFigure, despined, result_figure, scale_of
+from tactsim.plotting.canvas import (
+    FAILED_COLOUR,
+    SKETCH,
+    Plot,
+    SingleFigure,
+    despined,
+    result_figure,
+    scale_of,
+    weighted_percentiles,
+)
 from tactsim.results import Result, Status
 from tactsim.units import format_quantity
 
 FORCE_COLOUR, RISE_COLOUR = "#1f4e79", "#b8540a"
+PERCENTILE = 99
+"""Of the touched area, up to which the contact pressure is shown."""
 
 
 class PressedFigures(SingleFigure):
@@ -43,19 +54,45 @@ class IndentationFigures(PressedFigures):
     kind: Literal["indentation"] = "indentation"
 
     def figure(self, result: Result) -> Figure:
-        """Section (if the result has fields) and force-displacement curve of an indentation."""
-        return section_beside(result, draw_curve, f"Indentation by a rigid {result.scene_as(IndentationScene).body.kind}")
+        """Section (if the result has fields), force-displacement curve, and contact pressure over the radius."""
+        scene = result.scene_as(IndentationScene)
+        draw = [draw_curve] if scene.contact is None else [draw_curve, _draw_contact]
+        return section_beside(result, draw, f"Indentation by a rigid {scene.body.kind}")
 
 
-def section_beside(result: Result, draw: Callable[[Axes, Result], None], title: str) -> Figure:
-    """The section of the last frame, if there is one, and a curve that ``draw`` draws."""
-    has_section = bool(result.frames)
-    with result_figure(result, (11.0 if has_section else 6.0, 4.4), title, where=after(result)) as figure:
-        axes = figure.subplots(1, 1 + has_section, squeeze=False, width_ratios=(1.5, 1) if has_section else None)[0]
+def section_beside(result: Result, draw: Sequence[Callable[[Axes, Result], None]], title: str) -> Figure:
+    """The section of the last frame, if there is one, and below each other the one or two curves that ``draw`` draws."""
+    has_section, rows = bool(result.frames), len(draw)
+    size = (11.0 if has_section else 6.0, 4.4 if rows == 1 else 5.8)
+    with result_figure(result, size, title, where=after(result)) as figure:
+        ratios = (1.5, 1) if has_section else None
+        grid = figure.add_gridspec(rows, 1 + has_section, width_ratios=ratios, height_ratios=(1.6, 1)[:rows])
         if has_section:
-            draw_contact_section(axes[0], result, result.frames[-1].time)
-        draw(axes[-1], result)
+            draw_contact_section(figure.add_subplot(grid[:, 0]), result, result.frames[-1].time)
+        for row, draw_one in enumerate(draw):
+            draw_one(figure.add_subplot(grid[row, -1]), result)
     return figure
+
+
+def _draw_contact(axis: Axes, result: Result) -> None:
+    """The contact pressure over the radius, up to a percentile of what touches: at edges it is singular, or nearly."""
+    scene = result.scene_as(IndentationScene)
+    assert scene.contact is not None
+    radius, pressure, area = (np.array(values) for values in (scene.contact.radius, scene.contact.pressure, scene.contact.area))
+    touching = pressure > 0
+    high = float(weighted_percentiles(pressure[touching], area[touching], (PERCENTILE,))[0])
+    factor, unit = scale_of(high, "Pa")
+    axis.plot(1e3 * radius, factor * pressure, ".-", color=FORCE_COLOUR, linewidth=1.0, markersize=2.5)
+    axis.fill_between(1e3 * radius, factor * pressure, color=FORCE_COLOUR, alpha=0.15, linewidth=0)
+    top, most = 1.15 * factor * high, int(pressure.argmax())
+    axis.set(xlim=(0, 1.3e3 * float(radius[touching].max())), ylim=(0, top), xlabel="radius in mm")
+    axis.set_ylabel(f"contact pressure\nin {unit}")
+    words = "mean on each element"
+    if factor * pressure[most] > top:
+        largest, place = format_quantity(float(f"{pressure[most]:.3g}"), "Pa"), format_quantity(float(f"{radius[most]:.3g}"), "m")
+        words += f", to the {PERCENTILE}th percentile; {largest} at {place}"
+    axis.set_title(words, loc="left")
+    despined(axis)
 
 
 def after(result: Result) -> str:

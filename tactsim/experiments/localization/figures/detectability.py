@@ -41,9 +41,10 @@ class DetectabilityFigures(SingleFigure):
         colours = colormaps["viridis"](np.linspace(0.0, 0.85, len(values["matrices"])))
         with result_figure(result, (10.4, 5.0), "Smallest lump found", remark=_wanted(result)) as figure:
             axes = figure.subplots(1, 2, sharey=True)
+            top = _top(values)
             for axis, (name, words) in zip(axes, PANELS.items(), strict=True):
                 radii = np.array(values[name], dtype=float)
-                _draw(axis, radii, 1e3 * np.array(values["depths"]), colours)
+                _draw(axis, radii, 1e3 * np.array(values["depths"]), colours, top)
                 _name_curves(axis, radii, values, colours)
                 axis.set_title(words, loc="left")
             axes[0].set_ylabel("smallest radius found in mm")
@@ -51,7 +52,13 @@ class DetectabilityFigures(SingleFigure):
         return figure
 
 
-def _draw(axis: Axes, radii: Array, depths: Array, colours: Array) -> None:
+def _top(values: Any) -> float:
+    """Height in mm of both panels, above the largest radius of either."""
+    finite = [radius for name in PANELS for radius in np.ravel(np.array(values[name], dtype=float)) if np.isfinite(radius)]
+    return 1.15e3 * max(finite) if finite else 1.0
+
+
+def _draw(axis: Axes, radii: Array, depths: Array, colours: Array, top: float) -> None:
     """Curves of radii (ratio, matrix, depth) in m over depths in mm; above the grey line a ball leaves the block."""
     for ratio, matrix in np.ndindex(*radii.shape[:2]):
         style: dict[str, Any] = {
@@ -61,8 +68,6 @@ def _draw(axis: Axes, radii: Array, depths: Array, colours: Array) -> None:
             "fillstyle": FILLS[ratio % len(FILLS)],
         }
         axis.plot(depths, 1e3 * radii[ratio, matrix], markersize=5, **style)
-    finite = 1e3 * radii[np.isfinite(radii)]
-    top = 1.15 * float(finite.max()) if finite.size else 1.0
     axis.fill_between([0.0, top, top], [0.0, top, top], top, color=NEVER, linewidth=0)
     axis.set(xlim=(0.0, float(depths.max()) * 1.04), ylim=(0.0, top), xlabel="depth of the centre below the upper jaw in mm")
     axis.grid(alpha=0.25, linewidth=0.6)

@@ -53,7 +53,7 @@ def _answer(result: Result) -> str:
     angle = np.degrees(quantities["hardest_angle"].value)
     words = f"hardest at sensor {quantities['hardest_sensor'].value}, {angle:.0f}°"
     if "margin_relative" in quantities:
-        words += f", {100 * quantities['margin_relative'].value:.2g} % above the second"
+        words += f", the second reads {100 * quantities['margin_relative'].value:.2g} % less"
     candidates = quantities["possible_hardest"].value
     if len(candidates) > 1:
         words += f"; sensors {', '.join(map(str, candidates))} may be the hardest"

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scenes import unmarked_figures
+from scenes import cut_words, unmarked_figures
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.analytic.force_factor import force_factor, rise_factor
@@ -152,6 +152,19 @@ def test_the_shipped_case_runs_and_is_drawn():
     assert (name, rest) == ("annulus_design.png", [])
     assert draw().startswith(b"\x89PNG")
     assert unmarked_figures(result) == []
+
+
+@pytest.mark.parametrize("times", [(0.5,), (0.5, 5.0), (0.5, 1.0, 5.0)])
+def test_no_words_are_cut_or_lie_on_each_other_and_the_recess_has_numbers(times):
+    result = AnnulusDesign.example().model_copy(update={"times": times}).run()
+    assert cut_words(result) == []
+    figure = result.plot("annulus_design")
+    figure.canvas.draw()
+    axis = figure.axes[0]
+    note, point = (next(one for one in axis.texts if begin in one.get_text()) for begin in ("all outside", "design point"))
+    assert not note.get_window_extent().overlaps(point.get_window_extent())
+    low, high = axis.get_ylim()
+    assert sum(low <= place <= high for place in axis.get_yticks()) >= 3
 
 
 def test_a_map_without_contours_is_drawn():

@@ -13,6 +13,7 @@ from tactsim.experiments.indentation.course import DisplacementPath
 from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.record import energy_assumptions
+from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Layer, Specimen
@@ -50,6 +51,32 @@ def test_threshold_quantities(plain):
     assert values["threshold_displacement"] == values["displacement"] < 0.6e-3
     assert any("fillet" in text for text in plain.assumptions)
     assert {name for step in plain.steps for name in step.values} <= set(plain.units)
+
+
+def test_the_profile_of_contact_pressure_is_that_of_hertz():
+    """Hertz 1882; to 3 % of the pressure at the axis, as an element is a seventh of the contact's radius."""
+    radius, depth = 10e-3, 0.05e-3
+    ball = thin(
+        specimen={"thickness": 30e-3, "radius": 30e-3},
+        body=Sphere(radius=radius),
+        contact=Coulomb(friction=0.0),
+        recess=None,
+        stop="displacement",
+        displacement=depth,
+        mesh=MeshSettings(finest=0.1e-3, growth=1.0, adaptive=False),
+    ).run()
+    profile = ball.scene_as(IndentationScene).contact
+    distance, pressure, area = (np.array(values) for values in (profile.radius, profile.pressure, profile.area))
+    contact_radius = np.sqrt(radius * depth)
+    plane_modulus = 3 * SOFT.shear_modulus / (1 - 0.25)
+    highest = 2 * plane_modulus / np.pi * np.sqrt(depth / radius)
+    inside = distance < 0.9 * contact_radius
+    assert inside.sum() >= 6
+    expected = highest * np.sqrt(1 - (distance[inside] / contact_radius) ** 2)
+    np.testing.assert_allclose(pressure[inside], expected, atol=0.03 * highest)
+    assert not pressure[distance > 1.2 * contact_radius].any()
+    assert pressure @ area == pytest.approx(ball["reaction_force"].value, rel=5e-3), "the face is nearly level"
+    assert thin().at_rest().scene_as(IndentationScene).contact is None
 
 
 def test_a_threshold_says_what_a_fit_in_compression_leaves_open():

@@ -11,7 +11,7 @@ from scenes import SOLVER, unmarked_figures
 
 from tactsim.contact.annulus import Annulus
 from tactsim.experiments.indentation.figures.indentation import IndentationFigures
-from tactsim.experiments.indentation.scene import IndentationScene
+from tactsim.experiments.indentation.scene import ContactProfile, IndentationScene
 from tactsim.plotting import figures_for
 from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
 
@@ -54,6 +54,24 @@ def test_a_colour_bar_says_what_lies_beyond_its_colours():
     even = np.full(6, 1e3)
     level = replace(plain, frames=(replace(frame, point_data={**frame.point_data, "pressure [Pa]": even}),))
     assert "arrows" not in texts(IndentationFigures().figure(level))
+
+
+def test_the_contact_pressure_is_drawn_to_a_percentile_and_what_lies_beyond_is_said():
+    plain = made_up()
+    radius = np.linspace(0.05, 4.0, 80) * 1e-3
+    pressure = np.where((radius > 1.5e-3) & (radius < 3e-3), 2e4, 0.0)
+    pressure[np.searchsorted(radius, 2.99e-3) - 1] = 2e5
+    area = np.where(pressure > 1e5, 1e-3, 1.0) * radius
+    profile = ContactProfile(radius=tuple(radius), pressure=tuple(pressure), area=tuple(area))
+    figure = IndentationFigures().figure(replace(plain, scene=plain.scene.model_copy(update={"contact": profile})))
+    axis = next(axis for axis in figure.axes if "contact pressure" in axis.get_ylabel())
+    assert "in kPa" in axis.get_ylabel()
+    assert axis.get_ylim()[1] == pytest.approx(23)
+    np.testing.assert_allclose(axis.lines[0].get_xydata(), 1e-3 * np.column_stack([1e6 * radius, pressure]))
+    assert axis.get_title("left") == "mean on each element, to the 99th percentile; 200 kPa at 2.95 mm"
+    even = profile.model_copy(update={"pressure": tuple(np.minimum(pressure, 2e4))})
+    figure = IndentationFigures().figure(replace(plain, scene=plain.scene.model_copy(update={"contact": even})))
+    assert "mean on each element" in [axis.get_title("left") for axis in figure.axes]
 
 
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from pydantic import ValidationError
-from scenes import unmarked_figures
+from scenes import cut_words, unmarked_figures
 from scipy.special import ndtri
 from scipy.stats import ncx2
 
@@ -104,12 +104,15 @@ def test_what_is_not_found_is_null_and_the_figure_is_drawn(run):
     assert result.quantities["smallest_radius"].value[0][0] == [None, None]
     assert figures_for(result)["detectability.png"]()[:4] == b"\x89PNG"
     assert unmarked_figures(result) == []
+    assert cut_words(result) == []
     some = run(depths=(3e-3, 6e-3, 10e-3)).run()
     axes = DetectabilityFigures().figure(some).axes
     lines = [line for line in axes[0].lines if len(line.get_xdata())]
     expected = np.array(some.quantities["smallest_radius"].value, dtype=float)
     np.testing.assert_allclose(lines[0].get_ydata(), 1e3 * expected[0, 0])
     np.testing.assert_allclose(lines[0].get_xdata(), [3, 6, 10])
+    curves = [line for axis in axes for line in axis.lines]
+    assert max(np.nanmax(line.get_ydata(), initial=0.0) for line in curves) < axes[0].get_ylim()[1], "both panels have one scale"
 
 
 @pytest.mark.parametrize(

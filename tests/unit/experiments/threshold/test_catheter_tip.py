@@ -129,6 +129,8 @@ def test_figure():
     words = " ".join(text.get_text() for text in CatheterTipFigures().figure(result).findobj(Text))
     for label in ("hardest at sensor 1", "leaflet", "annulus", "atrium", "threshold pressure in kPa"):
         assert label in words
+    best, second = sorted((one for one in result["reported_pressure"].value if one is not None), reverse=True)[:2]
+    assert f"the second reads {100 * (1 - second / best):.2g} % less" in words
     none = run(press=0.05e-3)
     assert figures_for(none)["catheter_tip.png"]().startswith(b"\x89PNG")
 
