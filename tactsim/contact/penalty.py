@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -17,6 +18,10 @@ TANGENTIAL_SHARE = 0.1
 """Tangential over normal penalty: elastic slip is ten times the penetration at equal traction."""
 SLIP_SHARE = 10.0
 """Largest elastic slip over the largest penetration."""
+WIDER = 10.0
+"""Factor between the tolerances through which a state is approached."""
+ROUND_OFF = 1e-9
+"""Logarithm of a factor between two tolerances that is none."""
 
 
 @dataclass(frozen=True)
@@ -24,13 +29,15 @@ class Regularisation:
     """Penalty in Pa/m that bounds the penetration by ``tolerance`` in m, and the stiffness that decides the state of a point.
 
     ``softest`` in Pa is a pressure scale of the tissue (a small-strain modulus) that bounds the penalty from below,
-    ``switch_length`` in m the pressure scale over the switch stiffness.
+    ``switch_length`` in m the pressure scale over the switch stiffness, ``widest`` in m the penetration from which on a state is
+    approached where Newton does not find it at once; with none it is not.
     """
 
     tolerance: float
     softest: float
     switch_length: float
     largest_pressure: float = 0.0
+    widest: float = 0.0
 
     augments = False
     """Whether the tractions of a solution become multipliers of the next one, instead of a stiffer penalty."""
@@ -44,6 +51,12 @@ class Regularisation:
     def reach(self) -> float:
         """Largest gap in m across which a point may press."""
         return 0.0
+
+    @property
+    def wider(self) -> tuple[Self, ...]:
+        """The same with wider tolerances, from the widest on, each a tenth of the one before."""
+        count = math.ceil(math.log10(self.widest / self.tolerance) - ROUND_OFF) if self.widest > self.tolerance else 0
+        return tuple(replace(self, tolerance=self.widest / WIDER**number) for number in range(count))
 
     def excess(self, penetration: float, elastic_slip: float) -> float:
         """Penetration in m over the tolerance; at most one if it is small enough."""

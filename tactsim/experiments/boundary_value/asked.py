@@ -10,6 +10,9 @@ from pydantic import Field
 from tactsim.model import FrozenModel
 from tactsim.units import Length, Time, format_quantity
 
+CARTESIAN = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
+AXISYMMETRIC = {"rr": (0, 0), "radial": (0, 0), "zz": (1, 1), "rz": (0, 1), "hoop": (2, 2)}
+"""Entries of the stress by the component's name; on an axisymmetric body its rows are r, z and hoop."""
 StressComponent = Literal["xx", "yy", "zz", "xy", "yz", "xz", "rr", "rz", "radial", "hoop", "von_mises", "mean"]
 
 
@@ -54,6 +57,23 @@ class AskedStress(Asked):
 
     unit: ClassVar[str] = "Pa"
     """Pascal."""
+
+    def entries(self, dimension: str) -> dict[str, tuple[int, int]]:
+        """Row and column of every component that is an entry of the stress in a dimension.
+
+        Raises
+        ------
+        ValueError
+            If the component is none and does not follow from them at the point; the message begins with its key.
+        """
+        entries = AXISYMMETRIC if dimension == "axisymmetric" else CARTESIAN
+        around = ("radial", "hoop") if any(self.at[:2]) else ()
+        if self.component not in (*entries, "von_mises", "mean", *around):
+            raise ValueError(
+                f"component: there is no {self.component} stress at this point in {dimension}; "
+                f"allowed: {', '.join(dict.fromkeys((*entries, *around, 'von_mises', 'mean')))}"
+            )
+        return entries
 
     @property
     def words(self) -> str:

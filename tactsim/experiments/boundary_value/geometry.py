@@ -18,6 +18,12 @@ from tactsim.units import Length
 Dimension = Literal["3d", "plane_strain", "axisymmetric"]
 AXES: dict[str, tuple[str, ...]] = {"3d": ("x", "y", "z"), "plane_strain": ("x", "y"), "axisymmetric": ("r", "z")}
 """Names of the coordinates."""
+MEASURES: dict[str, Literal["solid", "plane_strain", "axisymmetric"]] = {
+    "3d": "solid",
+    "plane_strain": "plane_strain",
+    "axisymmetric": "axisymmetric",
+}
+"""What a volume means in each dimension."""
 TETRAHEDRA_OF_PRISM = 3
 Part = Literal["whole", "half", "quarter"]
 

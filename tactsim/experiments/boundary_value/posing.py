@@ -9,10 +9,7 @@ import numpy as np
 
 from tactsim.contact.penalty import Augmentation, Regularisation
 from tactsim.contact.traction import ContactPair
-from tactsim.contact.turned import Turned
-from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.conditions import (
-    SIDES,
     ContactCondition,
     FaceCondition,
     ForceCondition,
@@ -20,29 +17,29 @@ from tactsim.experiments.boundary_value.conditions import (
     PressureCondition,
     TractionCondition,
 )
-from tactsim.experiments.boundary_value.geometry import AXES
+from tactsim.experiments.boundary_value.geometry import AXES, MEASURES
 from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import AT_NODE, Parts
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
+from tactsim.experiments.boundary_value.touch import touch_of
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.dead_load import DeadTraction
 from tactsim.fem.assembly.pressure import FollowerPressure
-from tactsim.fem.assembly.space import Measure, SurfacePoints, TaylorHood
+from tactsim.fem.assembly.space import SurfacePoints, TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
-from tactsim.mechanics.contact.first_touch import first_touch
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.models.loaded_body import Conditions, FactoredForce, LoadedBody, MovedContact
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
 from tactsim.mechanics.models.solid_model import PATIENCE
 
-MEASURES: dict[str, Measure] = {"3d": "solid", "plane_strain": "plane_strain", "axisymmetric": "axisymmetric"}
 SWITCH_SHARE = 0.03
 """Length over which a violated contact counts as much as the largest pressure, as a part of the body's size."""
 SOFTNESS = 2.5e-3
 """Penetration that the penalty of friction would leave without multipliers, over the body's size: a part of a small cell."""
-FAR = 2.0
-"""Distance from which a rigid body approaches, over the body's size."""
+WIDEST = 1e-2
+"""Penetration from which on a state is approached if Newton does not find it at once, over the body's size: with it, round bodies
+on coarse cells are found from far away, and a tenth of it changes hardly a point from open to closed."""
 
 
 Load = PressureCondition | TractionCondition | ForceCondition
@@ -91,7 +88,7 @@ class _Posing:
         held = motions_of(self._parts, self._problem.conditions)
         forces = tuple(one for one in self._problem.conditions if isinstance(one, Load))
         loads, units = zip(*map(self._load, forces), strict=True) if forces else ((), ())
-        contacts = tuple(self._contact(*numbered) for numbered in enumerate(self._problem.contacts))
+        contacts = tuple(map(self._contact, self._problem.contacts))
         prescribed = PrescribedMotions([one.motion for one in held], self._size)
         conditions = Conditions(prescribed, len(held), loads, units, contacts)
         options = PATIENCE if contacts else NewtonOptions()
@@ -108,7 +105,7 @@ class _Posing:
         rubbing = [contact.posed for contact in contacts if contact.posed.pair.has_friction]
         if rubbing and all(self._conforms(contact) for contact in rubbing):
             return Augmentation(tolerance, modulus, SWITCH_SHARE * self._size, softness=SOFTNESS * self._size)
-        return Regularisation(tolerance, modulus, SWITCH_SHARE * self._size)
+        return Regularisation(tolerance, modulus, SWITCH_SHARE * self._size, widest=WIDEST * self._size)
 
     def _conforms(self, contact: PosedContact) -> bool:
         """Whether all points of a face are as far from the rigid body."""
@@ -130,20 +127,11 @@ class _Posing:
                 traction[axis] = value / area
         return DeadTraction(self._surface(points), traction, len(self._body.pattern.indices)), 1.0
 
-    def _contact(self, number: int, condition: ContactCondition) -> MovedContact:
+    def _contact(self, condition: ContactCondition) -> MovedContact:
         """A rigid body at first touch."""
-        points = self._body.space.surface_points(self._parts.facets(condition))
-        axis = SIDES[self._problem.dimension][condition.side]
-        body = condition.body if axis[-1] == 1.0 else Turned.of(condition.body, axis)
-        away, origin = np.array(axis), np.zeros(self._dim) if condition.at is None else np.array(condition.at)
-        nodes = self._mesh.nodes[np.unique(self._parts.facets(condition))].T
-        reference = points.interpolate(self._mesh.nodes)
-        begin = origin + (FAR * self._size + float((away @ nodes).max()) - away @ origin) * away
-        place = first_touch(body, np.hstack([nodes, reference]), begin=begin, direction=-away, size=self._size)
-        if place is None:
-            met = f"the {condition.body.kind} that comes from the {condition.side} does not meet {condition.face}"
-            raise InputError(f"contacts.{number}: {met}")
-        contact = PosedContact.apart(self._surface(points), reference, ContactPair(body, condition.law), place)
+        touch = touch_of(self._parts, condition, self._problem.dimension)
+        pair = ContactPair(touch.body, condition.law)
+        contact = PosedContact.apart(self._surface(touch.points), touch.reference, pair, touch.place)
         displacement = np.zeros(self._dim)
         for number, value in (condition.along(self._axes) if condition.moves else {}).items():
             displacement[number] = value

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from tactsim.errors import InputError
+from tactsim.errors import ConvergenceError, InputError
 from tactsim.experiments.boundary_value.conditions import SIDES
+from tactsim.experiments.boundary_value.limit_load import LimitLoad
 from tactsim.experiments.boundary_value.posing import PosedProblem, posed
 from tactsim.experiments.boundary_value.probes import Probes
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
@@ -66,7 +67,8 @@ def boundary_value_course(problem: BoundaryValueSetup) -> Course:
         If a condition names what the body has not.
     """
     path, record = _begun(problem)
-    return Course((record.accept(state) for state, _ in path.states()), record.findings, setup_is_timed=True)
+    limit = LimitLoad(record.model, path.start)
+    return Course(_accepted(record, path, limit), record.findings, setup_is_timed=True)
 
 
 def unloaded_problem(problem: BoundaryValueSetup) -> Findings:
@@ -99,6 +101,16 @@ def _begun(problem: BoundaryValueSetup) -> tuple[TimedPath, BoundaryValueRecord]
     start = TimedState.at_rest(model.model.body, model.model.at_rest(), len(histories))
     path = TimedPath(model.model, AskedTimes(policy, times), course, start)
     return path, BoundaryValueRecord(problem, model, probes, path)
+
+
+def _accepted(record: BoundaryValueRecord, path: TimedPath, limit: LimitLoad) -> Iterator[StepRecord]:
+    """The accepted states of a path, recorded; a path that gives up says whether it is at a limit load."""
+    try:
+        for state, _ in path.states():
+            limit.saw(state)
+            yield record.accept(state)
+    except ConvergenceError as error:
+        raise ConvergenceError(f"{error}{limit.in_words()}", error.history, error.solutions) from error
 
 
 def _time_reached(step: StepRecord) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Annotated, Self
 
 import numpy as np
@@ -19,7 +19,7 @@ from tactsim.experiments.boundary_value.conditions import (
     RotationCondition,
 )
 from tactsim.experiments.boundary_value.geometry import AXES, AnyGeometry, Dimension
-from tactsim.experiments.boundary_value.motions import motions_of
+from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.materials.any_material import AnyMaterial
@@ -117,12 +117,12 @@ class BoundaryValueSetup(FrozenModel):
         parts = Parts.of(self.geometry, self.dimension)
         held = motions_of(parts, self.conditions)
         for number, contact in enumerate(self.contacts):
-            _blaming(f"contacts.{number}.", parts.facets, contact)
+            _blaming(f"contacts.{number}.", self._check_touch, contact, parts)
         for name, one in self.asked.items():
             if isinstance(one, AskedForce | AskedTorque):
                 _blaming(f"asked.{name}.", parts.face, one.face)
             if isinstance(one, AskedDisplacement | AskedStress):
-                _blaming(f"asked.{name}.", parts.check_place, one.at)
+                _blaming(f"asked.{name}.", self._check_point, one, parts)
         try:
             PrescribedMotions([one.motion for one in held], parts.size)
         except InputError as error:
@@ -131,6 +131,36 @@ class BoundaryValueSetup(FrozenModel):
             raise ValueError(
                 f"conditions: nothing holds the body against {in_words(free)}; prescribe such a displacement of a face or a point"
             )
+        self._check_freedom(parts, held)
+
+    def _check_freedom(self, parts: Parts, held: Sequence[Held]) -> None:
+        """Check that an incompressible body may give way somewhere."""
+        from tactsim.experiments.boundary_value.confinement import is_confined
+
+        if self.material.bulk_modulus is None and is_confined(parts, held, self.dimension):
+            raise ValueError(
+                "conditions: the body is confined on all sides and its material incompressible, so that its volume cannot change "
+                "and its pressure is arbitrary; give the material a bulk_modulus, or a poisson_ratio below 0.5, or leave a face "
+                "free"
+            )
+
+    def _check_touch(self, contact: ContactCondition, parts: Parts) -> None:
+        """Check that a rigid body meets its face."""
+        from tactsim.experiments.boundary_value.touch import touch_of
+
+        touch_of(parts, contact, self.dimension)
+
+    def _check_point(self, one: AskedDisplacement | AskedStress, parts: Parts) -> None:
+        """Check that the body has the point, and such a stress there."""
+        from tactsim.mechanics.fields.point_values import containing
+
+        parts.check_place(one.at)
+        try:
+            containing(parts.domain.mesh.nodes, parts.domain.mesh.elements, np.array(one.at))
+        except InputError as error:
+            raise ValueError(f"at: {error}") from None
+        if isinstance(one, AskedStress):
+            one.entries(self.dimension)
 
     def _check_time(self, name: str, time: float) -> None:
         """Check that there is a state at a time in s."""

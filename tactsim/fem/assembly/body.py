@@ -120,6 +120,16 @@ class Body:
             self._kernels.deformation(u, self.space.elements, self.points.gradients, self.points.hoop, F, invariants)
         return Kinematics(F.reshape(3, 3, *shape), *invariants)
 
+    def oriented_volume_ratio(self, state: Kinematics) -> Array:
+        """J at the points (E, Q), negative wherever matter lies inside out.
+
+        That is also where a section has passed the axis of revolution: hoop stretch and ratio of areas are negative there, their
+        product J is not.
+        """
+        if self.space.measure != "axisymmetric":
+            return state.J
+        return np.where(state.F[2, 2] > 0, state.J, -np.abs(state.J))
+
     def pressure(self, unknowns: Array) -> Array:
         """Pressure unknown (tension positive) at the quadrature points in Pa, shape (E, Q)."""
         _, p = self.space.split(unknowns)

@@ -9,19 +9,20 @@ from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 
 WEAKNESS = 1e-8
-"""Stiffness of all springs together over that of the body: its shear modulus times its size."""
+"""Stiffness of all springs together over that of the body."""
 
 
 class AnchoredSprings:
     """Springs on every node, in proportion to its volume, without force at the unknowns ``rest`` (size,).
 
-    ``strength`` is the stiffness of all springs together over that of the body: its shear modulus times its size.
+    ``strength`` is the stiffness of all springs together over that of the body: its shear modulus times its size, or in plane
+    strain times the metre of depth.
     """
 
     def __init__(self, body: Body, strength: float, rest: Array):
         space = body.space
         volume = np.bincount(space.elements.ravel(), np.repeat(body.points.weights.sum(axis=1), space.elements.shape[1]))
-        size = float(np.ptp(space.nodes, axis=0).max())
+        size = 1.0 if space.measure == "plane_strain" else float(np.ptp(space.nodes, axis=0).max())
         softest = min(material.shear_modulus for material in body.materials)
         self._stiffness = np.zeros(space.size)
         self._stiffness[: space.displacement_size] = np.repeat(strength * softest * size * volume / volume.sum(), space.dim)

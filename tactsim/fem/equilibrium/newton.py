@@ -291,6 +291,6 @@ class _Solution:
 
     def _admissible(self, unknowns: Array, floor: float) -> Kinematics | None:
         after = self._body.kinematics(unknowns)
-        J = after.J[~self._body.linear]
+        J = self._body.oriented_volume_ratio(after)[~self._body.linear]
         ok = np.isfinite(after.F).all() and (not J.size or J.min() > floor)
         return after if ok else None

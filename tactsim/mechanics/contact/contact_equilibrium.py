@@ -106,9 +106,32 @@ def contact_equilibrium(
             raise Collapsed(
                 f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
+        if approached := _approached(problem, state, load, guess, action):
+            return approached
         if not 0 < load - state.load <= SNAP_STEP * load:
             raise
     return _after_snap(problem, state, load, action)
+
+
+def _approached(
+    problem: Problem, state: ContactEquilibrium, load: float, guess: Array, action: Action
+) -> ContactEquilibrium | None:
+    """The state, found through those of wider penetration tolerances; None if it is not.
+
+    Why: on cells coarser than the patch that presses, more points touch a round body than the surface can follow; a stiff
+    contact opens and closes them in turns, however short the step. Those of a softer contact are nearly the same, without turns.
+    """
+    if not state.regularisation.wider:
+        return None
+    iterations, reached = 0, state
+    try:
+        for regularisation in (*state.regularisation.wider, state.regularisation):
+            start = replace(state, regularisation=regularisation)
+            reached = _equilibrium(problem, start, load, guess, action, from_guess=iterations > 0)
+            guess, iterations = reached.unknowns, iterations + reached.iterations
+    except ConvergenceError:
+        return None
+    return replace(reached, iterations=iterations)
 
 
 def _after_snap(problem: Problem, state: ContactEquilibrium, load: float, action: Action) -> ContactEquilibrium:

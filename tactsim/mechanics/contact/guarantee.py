@@ -58,7 +58,7 @@ def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) 
     """Nothing, if a state keeps all that is guaranteed of an accepted one.
 
     1. Unknowns, deformation and contact forces are finite numbers.
-    2. J > 0 in every element whose material is not a small-strain one.
+    2. J > 0 in every element whose material is not a small-strain one, and no section has passed the axis of revolution.
     3. No surface point is deeper in a rigid body than the penetration tolerance, and none presses across a gap wider than the
        reach of the regularisation.
     4. Pressures only push, and friction lies along the rigid body and within the limit of the contact law.
@@ -120,7 +120,7 @@ def _finite(arrays: Sequence[Array]) -> bool:
 
 
 def _inside_out(body: Body, kinematics: Kinematics) -> str | None:
-    J = kinematics.J[~body.linear]
+    J = body.oriented_volume_ratio(kinematics)[~body.linear]
     return f"{inside_out_in_words(body, kinematics)}; allowed: above 0" if J.size and J.min() <= 0 else None
 
 

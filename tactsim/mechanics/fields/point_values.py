@@ -62,17 +62,7 @@ class BodyPoint:
         InputError
             If it lies outside the body.
         """
-        space = body.space
-        corners = space.nodes[space.elements]
-        low, high = corners.min(axis=1), corners.max(axis=1)
-        slack = 1e-3 * (high - low).max(axis=1, keepdims=True)
-        near = np.flatnonzero(((place >= low - slack) & (place <= high + slack)).all(axis=1))
-        local = _local(corners[near], place)
-        within = np.minimum(local.min(axis=1), 1 - local.sum(axis=1)) >= -INSIDE if len(near) else np.zeros(0, bool)
-        if not within.any():
-            given = ", ".join(format_quantity(value, "m") for value in place)
-            raise InputError(f"the point at {given} lies outside the body; take one in it, in undeformed coordinates")
-        return cls(body, near[within], local[within])
+        return cls(body, *containing(body.space.nodes, body.space.elements, place))
 
     def displacement(self, unknowns: Array) -> Array:
         """Displacement (d,) in m."""
@@ -90,6 +80,26 @@ class BodyPoint:
         values = self.body.points.pressure_values
         there = np.column_stack([1 - self.local.sum(axis=1), self.local])
         return np.asarray(there @ np.linalg.pinv(values))
+
+
+def containing(nodes: Array, elements: Array, place: Array) -> tuple[Array, Array]:
+    """The elements (k,) that hold a place (d,) in m and its coordinates (k, d) in their reference simplex.
+
+    Raises
+    ------
+    InputError
+        If none does.
+    """
+    corners = nodes[elements]
+    low, high = corners.min(axis=1), corners.max(axis=1)
+    slack = 1e-3 * (high - low).max(axis=1, keepdims=True)
+    near = np.flatnonzero(((place >= low - slack) & (place <= high + slack)).all(axis=1))
+    local = _local(corners[near], place)
+    within = np.minimum(local.min(axis=1), 1 - local.sum(axis=1)) >= -INSIDE if len(near) else np.zeros(0, bool)
+    if not within.any():
+        given = ", ".join(format_quantity(value, "m") for value in place)
+        raise InputError(f"the point at {given} lies outside the body; take one in it, in undeformed coordinates")
+    return near[within], local[within]
 
 
 def _local(corners: Array, place: Array) -> Array:

@@ -14,6 +14,7 @@ from tactsim.mechanics.contact.penetration_effect import PenetrationEffect
 from tactsim.mechanics.fields.ellipticity import elliptic_in
 from tactsim.mechanics.fields.volume_ratios import VolumeRatios
 from tactsim.mechanics.outcome.contact_history import WHOLE_RUN
+from tactsim.mechanics.outcome.small_strains import SmallStrains
 from tactsim.mesh.adaptation import Refinement
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
@@ -46,6 +47,7 @@ class ContactQuality:
         reached: Callable[[StepRecord], str] = displacement_reached,
     ):
         self._effect, self._volumes, self._reached = PenetrationEffect(stiffest), VolumeRatios(finer), reached
+        self._strains = SmallStrains()
         self._unstable: Array | None = None
 
     def refined(self, before: Body, split: Refinement) -> None:
@@ -60,6 +62,7 @@ class ContactQuality:
         """History values of a state: how volumes are kept, what has left ellipticity until now, what penetration costs."""
         unstable, weights = ~elliptic_in(body, state.kinematics), body.points.weights
         self._unstable = unstable if self._unstable is None else self._unstable | unstable
+        self._strains.saw(body, state.kinematics)
         return {
             "min_volume_ratio": float(state.kinematics.J.min()),
             "unstable_volume_fraction": float(weights[self._unstable].sum() / weights.sum()),
@@ -85,11 +88,12 @@ class ContactQuality:
     def warnings(self, steps: Sequence[StepRecord]) -> list[str]:
         """Warnings about the accepted steps: volumes that are not kept, and material that left strong ellipticity."""
         unstable = [step for step in steps if step.values["unstable_volume_fraction"] > 0]
+        kept = [*self._volumes.warnings(), *self._strains.warnings()]
         if not unstable:
-            return self._volumes.warnings()
+            return kept
         share = steps[-1].values["unstable_volume_fraction"]
         return [
-            *self._volumes.warnings(),
+            *kept,
             f"{share:.1%} of the volume left strong ellipticity, first at {self._reached(unstable[0])}: "
             "there the answer depends on the mesh; take a stable material set",
         ]

@@ -86,6 +86,16 @@ def test_a_guess_with_an_element_inside_out_is_refused(dim):
         Problem(body, fixed).solve(guess, nodal_force=force)
 
 
+def test_a_section_on_the_other_side_of_its_axis_is_inside_out_though_it_keeps_its_volume():
+    body = body_of(box([1.0, 1.0], [2, 2]), "axisymmetric", MATERIALS["compressible"])
+    guess = np.zeros(body.space.size)
+    u, _ = body.space.split(guess)
+    u[:, 0] = -2 * body.space.nodes[:, 0]
+    assert body.kinematics(guess).J.min() > 0.99
+    with pytest.raises(ConvergenceError, match=r"inside out.*passes the axis of revolution"):
+        Problem(body, np.zeros(0, int)).solve(guess)
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 def test_forces_that_are_not_finite_raise(dim, bad):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 from mutants import assert_kills
 
+from tactsim.experiments.boundary_value import posing
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.mechanics.models.loaded_body import Conditions
 from tactsim.results import Result
@@ -75,3 +76,35 @@ def test_what_penetration_takes_away_is_estimated_on_a_thin_layer(monkeypatch: p
     check(estimate)
     monkeypatch.setattr(Conditions, "only_contacts_act", False)
     assert_kills(check, growth_of_a_cube_of_its_size=(layer(2e-6)[1],))
+
+
+def on_coarse_cells(tolerance: float | None) -> Result:
+    """A ball pressed by 1.5 mm into a quarter of a bonded block, on cells as large as its radius."""
+    cells = [{"length": 10e-3, "cells": 2}]
+    return BoundaryValueProblem.model_validate(
+        {
+            "dimension": "3d",
+            "geometry": {"kind": "block", "x": cells, "y": cells, "z": cells},
+            "material": {"kind": "neo_hookean", "c10": 3e3},
+            "conditions": [
+                {"kind": "clamped", "face": "bottom"},
+                {"kind": "displacement", "face": "left", "x": 0.0},
+                {"kind": "displacement", "face": "front", "y": 0.0},
+            ],
+            "contacts": [{"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 5e-3}, "z": -1.5e-3}],
+            "penetration_tolerance": tolerance,
+            "steps": 3,
+            "asked": {"force": {"kind": "contact_force", "component": "z"}},
+        }
+    ).run()
+
+
+def test_a_ball_on_coarse_cells_in_space_needs_no_wider_tolerance_than_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+    wide, default = on_coarse_cells(1e-6), on_coarse_cells(None)
+    for result in (wide, default):
+        assert result.status is Status.CONVERGED, result.reason
+    assert default["max_penetration"].value <= 1e-6 * 10e-3
+    # What the wider tolerance takes away, by its estimate, 2.4e-4 here.
+    assert default["force"].value == pytest.approx(wide["force"].value, rel=2 * wide["penetration_force_error"].value)
+    monkeypatch.setattr(posing, "WIDEST", 0.0)
+    assert on_coarse_cells(None).status is Status.FAILED

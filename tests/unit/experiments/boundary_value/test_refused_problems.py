@@ -6,7 +6,6 @@ import pytest
 from pydantic import ValidationError
 from small_problems import BRICK, CELLS, EXTENSION, PLANES, ROD, RUBBER, SIDE, SQUARE, TOP, asked
 
-from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.refusals import refusals_of
 from tactsim.units import written
@@ -14,6 +13,7 @@ from tactsim.units import written
 pytestmark = pytest.mark.usefixtures("one_thread")
 
 
+BALL = {"kind": "ball", "radial": CELLS}
 HALF = {"x": [0.0, SIDE / 2]}
 
 
@@ -51,33 +51,36 @@ HALF = {"x": [0.0, SIDE / 2]}
         ({"asked": asked("force", face="roof", component="x")}, "asked.number.face", "no face 'roof'"),
         ({"dimension": "axisymmetric", "asked": asked("volume")}, "geometry", "a block has no axis"),
         ({"contacts": [{"face": "roof", "side": "top", "body": {"kind": "plane"}}]}, "contacts.0.face", "no face 'roof'"),
+        (
+            {"asked": asked("stress", at=TOP, component="rz")},
+            "asked.number.component",
+            "no rz stress at this point in 3d; allowed: xx",
+        ),
+        (
+            {"asked": asked("stress", at=(0.0, 0.0, SIDE), component="hoop")},
+            "asked.number.component",
+            "allowed: xx, yy, zz, xy, yz, xz, von_mises, mean",
+        ),
+        (
+            {"dimension": "axisymmetric", "geometry": BALL, "asked": asked("stress", at=(SIDE, SIDE), component="mean")},
+            "asked.number.at",
+            "the point at 10 mm, 10 mm lies outside the body",
+        ),
+        (
+            {"contacts": [{"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 1e-3}, "at": [1.0, 0.0, 0.0]}]},
+            "contacts.0.at",
+            "the sphere that comes from the top does not meet top",
+        ),
     ],
 )
 def test_what_the_body_has_not_is_refused_with_its_key(fields, place, words):
-    held = [{"kind": "clamped", "face": "bottom"}]
+    held = [{"kind": "clamped", "face": "outer" if fields.get("geometry") == BALL else "bottom"}]
     fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
     with pytest.raises(ValidationError) as caught:
         BoundaryValueProblem.model_validate(fields)
     ((path, message),) = refusals_of(caught.value, written(fields), BoundaryValueProblem).items()
     assert ".".join(map(str, path)) == place
     assert words in message
-
-
-@pytest.mark.parametrize(
-    ("fields", "words"),
-    [
-        ({"asked": asked("stress", at=TOP, component="rz")}, "asked.number: there is no rz stress"),
-        (
-            {"contacts": [{"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 1e-3}, "at": [1.0, 0.0, 0.0]}]},
-            "contacts.0: the sphere that comes from the top does not meet top",
-        ),
-    ],
-)
-def test_what_the_posed_problem_has_not_is_refused_before_the_first_step(fields, words):
-    held = [{"kind": "clamped", "face": "bottom"}]
-    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "conditions": held} | fields
-    with pytest.raises(InputError, match=words):
-        BoundaryValueProblem.model_validate(fields).begin()
 
 
 @pytest.mark.parametrize(
@@ -176,3 +179,29 @@ def test_a_body_that_only_a_rigid_one_holds_is_doubted():
     held = [{"kind": "displacement", "face": "bottom", "y": 0.0}]
     (doubt,) = BoundaryValueProblem.model_validate(fields | {"conditions": held}).doubts()
     assert "nothing but rigid bodies holds the body against moving along x:" in doubt
+
+
+WALLS = [*PLANES, {"kind": "displacement", "face": "right", "x": 0.0}, {"kind": "displacement", "face": "back", "y": 0.0}]
+PRESSED = {"kind": "displacement", "face": "top", "z": -0.01 * SIDE}
+
+
+@pytest.mark.parametrize(
+    ("dimension", "geometry", "conditions"),
+    [
+        ("3d", BRICK, [*WALLS, PRESSED]),
+        ("axisymmetric", ROD, [{"kind": "clamped", "face": face} for face in ("bottom", "top", "outer")]),
+        ("plane_strain", SQUARE, [{"kind": "clamped", "face": face} for face in ("bottom", "top", "left", "right")]),
+        ("axisymmetric", BALL, [{"kind": "clamped", "face": "outer"}]),
+    ],
+)
+def test_an_incompressible_body_confined_on_all_sides_is_refused_before_it_is_solved(dimension, geometry, conditions):
+    fields = {"dimension": dimension, "geometry": geometry, "conditions": conditions, "asked": asked("volume")}
+    with pytest.raises(ValidationError, match="confined on all sides and its material incompressible"):
+        BoundaryValueProblem.model_validate(fields | {"material": RUBBER})
+    assert BoundaryValueProblem.model_validate(fields | {"material": RUBBER | {"bulk_modulus": 1e6}}).begin()
+
+
+@pytest.mark.parametrize("conditions", [WALLS, [*WALLS, {"kind": "pressure", "face": "top", "pressure": 10.0}]])
+def test_an_incompressible_body_with_a_face_that_may_move_is_accepted(conditions):
+    fields = {"dimension": "3d", "geometry": BRICK, "conditions": conditions, "asked": asked("volume"), "material": RUBBER}
+    assert BoundaryValueProblem.model_validate(fields)
