@@ -25,12 +25,15 @@ from tactsim.mechanics.outcome.contact_record import (
     penetration_allowed,
     solver_report,
 )
+from tactsim.mechanics.outcome.success import LARGEST_FORCE_ERROR
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState, TimeInterval, TimeStepPolicy, smooth_intervals
 from tactsim.mechanics.paths.step_policy import StepPolicy, shortest_relaxation_time
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Status, StepRecord
 from tactsim.units import format_quantity
 
+WIDER = 10.0
+"""Factor of a penetration tolerance that is advised where the contact does not converge."""
 SAME_TIME = 1e-9
 """Relative difference of two times that is round-off."""
 
@@ -104,13 +107,14 @@ def _begun(problem: BoundaryValueSetup) -> tuple[TimedPath, BoundaryValueRecord]
 
 
 def _accepted(record: BoundaryValueRecord, path: TimedPath, limit: LimitLoad) -> Iterator[StepRecord]:
-    """The accepted states of a path, recorded; a path that gives up says whether it is at a limit load."""
+    """The accepted states of a path, recorded; one that gives up says if its load is at a limit or its contact too exact."""
     try:
         for state, _ in path.states():
             limit.saw(state)
             yield record.accept(state)
     except ConvergenceError as error:
-        raise ConvergenceError(f"{error}{limit.in_words()}", error.history, error.solutions) from error
+        hints = limit.in_words() or record.wider_in_words()
+        raise ConvergenceError(f"{error}{hints}", error.history, error.solutions) from error
 
 
 def _time_reached(step: StepRecord) -> str:
@@ -150,6 +154,17 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     def kept_as(self, state: TimedState, event: bool) -> Sequence[str]:
         """The last state."""
         return ("last",)
+
+    def wider_in_words(self) -> str:
+        """That a wider penetration tolerance costs little of the force; empty if it would cost more than is allowed."""
+        cost = WIDER * self.steps[-1].values["penetration_force_error"] if self.steps else 0.0
+        if not 0 < cost <= LARGEST_FORCE_ERROR:
+            return ""
+        given, wider = (format_quantity(factor * self.tolerance, "m") for factor in (1.0, WIDER))
+        return (
+            f"; instead of {given}, penetration_tolerance: {wider} is easier to reach and takes away some {cost:.1g} of the "
+            "force, as penetration_force_error then says"
+        )
 
     def verdict(self) -> tuple[Status, str]:
         """A path that came to its end has converged, unless a number that is asked for is none."""

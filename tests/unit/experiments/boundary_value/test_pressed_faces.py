@@ -107,4 +107,6 @@ def test_a_ball_on_coarse_cells_in_space_needs_no_wider_tolerance_than_the_defau
     # What the wider tolerance takes away, by its estimate, 2.4e-4 here.
     assert default["force"].value == pytest.approx(wide["force"].value, rel=2 * wide["penetration_force_error"].value)
     monkeypatch.setattr(posing, "WIDEST", 0.0)
-    assert on_coarse_cells(None).status is Status.FAILED
+    failed = on_coarse_cells(None)
+    assert failed.status is Status.FAILED
+    assert "instead of 10 nm, penetration_tolerance: 100 nm is easier to reach" in failed.reason
