@@ -237,7 +237,7 @@ def unit_at(model: type[BaseModel], value: Any, path: Path) -> str:
 
 
 def _schema_at(schema: dict[str, Any], root: Any, path: Path) -> dict[str, Any]:
-    """The part of the schema for a key path, following in every union the member of the ``kind`` or ``control`` that the file names."""
+    """The part of the schema for a key path, in every union of the member whose ``kind`` or ``control`` the file names."""
     fragment = _narrowed(schema, schema, root)
     for position, key in enumerate(path):
         fragment = _entry(fragment, key)
