@@ -237,7 +237,7 @@ def unit_at(model: type[BaseModel], value: Any, path: Path) -> str:
 
 
 def _schema_at(schema: dict[str, Any], root: Any, path: Path) -> dict[str, Any]:
-    """The part of the schema for a key path, following in every union the member of the ``kind`` that the file names."""
+    """The part of the schema for a key path, in every union of the member whose ``kind`` or ``control`` the file names."""
     fragment = _narrowed(schema, schema, root)
     for position, key in enumerate(path):
         fragment = _entry(fragment, key)
@@ -261,6 +261,13 @@ def _narrowed(fragment: dict[str, Any], schema: dict[str, Any], value: Any) -> d
     members = list(_members(fragment, schema))
     if isinstance(value, dict) and len(members) > 1:
         kind = value.get("kind")
-        fitting = [m for m in members if (_tag(m) == kind if kind else set(m.get("required", ["kind"])) <= value.keys())]
+        agreeing = [m for m in members if _agrees(m, value)]
+        fitting = [m for m in agreeing if (_tag(m) == kind if kind else set(m.get("required", ["kind"])) <= value.keys())]
         members = fitting if len(fitting) == 1 else members
     return members[0] if len(members) == 1 else {**_resolved(fragment, schema), "anyOf": members}
+
+
+def _agrees(member: dict[str, Any], value: dict[str, Any]) -> bool:
+    """Whether a mapping has what a member of a union has as constants, such as ``control``, where it has these keys."""
+    constants = {key: entry["const"] for key, entry in member.get("properties", {}).items() if "const" in entry}
+    return all(value[key] == constant for key, constant in constants.items() if key in value)

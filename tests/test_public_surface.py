@@ -274,6 +274,11 @@ def test_parts_that_are_built_in_python_stand_in_overrides_mappings_and_variatio
     weighted = press.vary({"outer_radius": ts.choice(2e-3, 4e-3, weights=(1, 0))})
     data = ts.sweep(weighted, samples=8, out=tmp_path / "two.zarr", workers=1, splits={"train": 0.5, "validation": 0.5})
     assert (data["outer_radius"] == 2e-3).all()
+    pressed = ts.ClosedForm(material=rubber, loading=ts.close("0.1 mm", "1 s"), points=5).vary(
+        {"loading.pieces.0.to": ts.uniform(1e-4, 2e-4)}
+    )
+    data = ts.sweep(pressed, samples=8, out=tmp_path / "pressed.zarr", workers=1, splits={"train": 0.5, "validation": 0.5})
+    assert data["varied_loading_pieces_0_to"].attrs["units"] == "m", "not N, as under force control"
 
 
 @pytest.mark.parametrize(
@@ -290,6 +295,10 @@ def test_parts_that_are_built_in_python_stand_in_overrides_mappings_and_variatio
         (
             lambda: ts.load_case("annulus_icf", {"experiment.recess": "4 kPa"}),
             r"^override experiment.recess: '4 kPa' has the wrong dim",
+        ),
+        (
+            lambda: ts.load_case("grasp_plain", {"experiment.loading.pieces": [{"kind": "ramp", "duration": "1 s"}]}),
+            r"^override experiment.loading.pieces: experiment.loading.pieces.0.to: missing; expected .* such as '1.5 mm'$",
         ),
         (lambda: ts.close(to="1 s", duration="1 s"), r"^close: to: '1 s' has the wrong dimension; expected a length"),
         (lambda: ts.close("1 mm", 0), r"^close: duration: 0 is out of range; must be greater than 0 s$"),

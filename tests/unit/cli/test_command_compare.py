@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tactsim.cli import main
-from tactsim.cli.command_compare import _name_of, report
+from tactsim.cli.command_compare import _name_of, _unit_of, report
 from tactsim.cli.figures.comparison import comparison_figure
 from tactsim.errors import InputError
 from tactsim.materials.library import LIBRARY
@@ -124,6 +124,9 @@ def test_a_key_that_has_another_unit_in_another_kind_has_a_row_for_each() -> Non
     units = {"pulled": "N", "moved": "m"}
     results = {"one": result("pulled", 0.2), "other": result("moved", 1e-3), "third": result("moved", 2e-3)}
     comparison = compared(results, lambda experiment, path: units[experiment["kind"]] if path == ("to",) else "")
+    loading = {"pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}], "control": "displacement"}
+    assert _unit_of({"kind": "grasp", "loading": loading}, ("loading", "pieces", 0, "to")) == "m"
+    assert _unit_of({"kind": "grasp", "loading": loading | {"control": "force"}}, ("loading", "pieces", 0, "to")) == "N"
     assert comparison.inputs == {
         "kind": ("pulled", "moved", "moved"),
         "to [mN]": ("200", "", ""),
