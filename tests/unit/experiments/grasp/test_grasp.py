@@ -244,7 +244,7 @@ def test_smooth_intervals_are_the_union_of_all_breakpoints():
             r"inclusions.0.lumen: sphere 1 has no empty space",
         ),
         ({"inclusions": [{"shape": TUBE, "material": "lump"}]}, "structured cannot follow the wall of tube 1; take kind: tetra"),
-        ({"inclusions": [], "mesh": {"kind": "layers"}}, "exactly one sphere or ellipsoid"),
+        ({"inclusions": [], "mesh": {"kind": "layers"}}, "exactly one ball, stretched or not"),
         (
             {
                 "inclusions": [{"shape": shape, "material": "lump"} for shape in (TUBE, aside(), aside(y=6e-3))],
