@@ -136,7 +136,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
 
     def _around(self, model: SolidModel) -> dict[str, Quantity]:
         """Vectors of force and moment at the last kept state, and the pressure around an annulus."""
-        _, state = max(self._kept.values(), key=lambda kept: kept[1].time)
+        _, state = max(self._kept.values(), key=_time_of)
         contact, unknowns = state.contact.contacts[0], state.contact.unknowns
         force = model.force(contact.at(model.displacement(unknowns)).traction)
         moment = model.moment(contact, unknowns)
@@ -210,8 +210,10 @@ class IndentationRecord(ContactRecord[PressedModel]):
         return IndentationScene(**self._pressed(), contact=self._contact())
 
     def _contact(self) -> ContactProfile | None:
-        """The contact pressure of the body along the surface of a section at the last kept state."""
-        model, state = max(self._kept.values(), key=lambda kept: kept[1].time)
+        """The contact pressure of the body along the surface of a section at the last kept state; none before the first."""
+        if not self._kept:
+            return None
+        model, state = max(self._kept.values(), key=_time_of)
         contact = state.contact.contacts[0]
         displacement = model.displacement(state.contact.unknowns)
         weights, edges = model.points.weights, (-1, model.points.per_facet)
@@ -232,6 +234,11 @@ class IndentationRecord(ContactRecord[PressedModel]):
             "recess": self.setup.recess,
             "solver": solver_report(self, mesh_adaptations=self.adaptations),
         }
+
+
+def _time_of(kept: tuple[PressedModel, TimedState]) -> float:
+    """The time in s of a kept state."""
+    return kept[1].time
 
 
 def specimen_assumptions(setup: IndentationSetup) -> list[str]:

@@ -53,6 +53,12 @@ def test_threshold_quantities(plain):
     assert {name for step in plain.steps for name in step.values} <= set(plain.units)
 
 
+def test_a_run_that_ends_before_its_first_state_has_no_profile_of_contact_pressure():
+    findings = thin().begin().findings()
+    assert not findings.steps
+    assert findings.scene.contact is None
+
+
 def test_the_profile_of_contact_pressure_is_that_of_hertz():
     """Hertz 1882; to 3 % of the pressure at the axis, as an element is a seventh of the contact's radius."""
     radius, depth = 10e-3, 0.05e-3
