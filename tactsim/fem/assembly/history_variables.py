@@ -29,12 +29,6 @@ ROUND_OFF = 128 * np.finfo(float).eps
 """Round-off of a stress over the shear modulus, and of the forces that it makes: F is one plus small numbers."""
 NOISE_GROWTH = 8
 """Sum of the coefficients of the differences, on even steps."""
-LEAST_STRESS = 1e-7
-"""Size of the stress over the smallest shear modulus by which an error counts at least.
-
-Why: while a round body touches its first points the stress begins at nothing with a kink, beside which its error is as large
-however short the step is: all of 16 spheres pressed along a ramp failed there.
-"""
 MEAN_OF_CUBIC = 0.25
 """Bound of the mean error of the parabola, over the slope of the error at its end times the step."""
 LARGEST_GROWTH = 2.4
@@ -171,12 +165,13 @@ def size_of(body: Body, stress: Array) -> float:
     return float(np.sqrt(np.einsum("eq,c,ceq,ceq->", weights, DOUBLE, stress, stress) / weights.sum()))
 
 
-def step_error(body: Body, variables: HistoryVariables) -> float:
+def step_error(body: Body, variables: HistoryVariables, least: float = 0.0) -> float:
     r"""Estimated error of the stress over its size after the last step, when steps like it go on; zero for the first of a piece.
 
     The error of the parabola is :math:`s (s - \Delta t)(s + \Delta t_0) \dddot S / 6` in the elastic stress. A short relaxation
     time responds to its slope at the end of a step, a long one to its mean, which fading memory keeps from accumulating. For the
     second step of a piece the whole curvature counts as the error. Differences within the round-off of F = 1 + ... do not count.
+    A stress below ``least`` in Pa counts as large as that.
     """
     if len(variables.earlier) < 2:
         return 0.0
@@ -194,7 +189,7 @@ def step_error(body: Body, variables: HistoryVariables) -> float:
     moduli = np.array([material.shear_modulus for material in body.materials])[body.regions]
     noise = NOISE_GROWTH * ROUND_OFF * max(last / length for _, length in variables.earlier) ** 2 * moduli[:, None]
     missed = np.where(np.abs(missed) > noise, missed, 0.0)
-    size = max(size_of(body, variables.stress), LEAST_STRESS * float(moduli.min()))
+    size = max(size_of(body, variables.stress), least)
     total = (variables.series.amplitudes * weight).sum(axis=0)
     return size_of(body, total[:, None] * missed) / size if size > 0 else 0.0
 

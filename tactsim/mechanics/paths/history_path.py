@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 from tactsim.analytic.histories import History, Segment
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body, RelaxationStep
-from tactsim.fem.assembly.history_variables import HistoryVariables, elastic_stress, series_of, step_error
+from tactsim.fem.assembly.history_variables import HistoryVariables, elastic_stress, series_of, size_of, step_error
 from tactsim.fem.paths.loading import Event, PathFollower, StepControl
 from tactsim.fem.paths.progress import check_steps
 from tactsim.fem.paths.time_steps import TimeControl, TimeEvent, TimeMarcher
@@ -156,6 +157,7 @@ class TimedPath:
         self, problem: EquilibriumProblem, step_policy: TimeStepPolicy, course: Sequence[TimeInterval], start: TimedState
     ):
         self._problem, self._step_policy, self._course, self.start = problem, step_policy, course, start
+        self._accepted = start
         asked = sum(len(step_policy.stops(interval)) + interval.duration / step_policy.largest(interval) for interval in course)
         check_steps(asked, "loading, with the steps and stops that time sets for its pieces,")
         self.rejected = 0
@@ -209,11 +211,13 @@ class TimedPath:
 
         if start.history_variables is not None:
             start = replace(start, history_variables=start.history_variables.at_slope_change())
-        marcher = TimeMarcher(advance, self._error, self._step_policy.control(interval))
+        marcher = TimeMarcher(advance, partial(self._error, interval), self._step_policy.control(interval))
+        self._accepted = start
         stops, largest = self._step_policy.stops(interval), self._step_policy.largest(interval)
         for state, happened in marcher.march(start, stops, largest=largest, event=event):
             self.rejected += marcher.rejected
             marcher.rejected = 0
+            self._accepted = state
             yield state, happened
 
     def _reached(self, now: TimedState, time: float, loads: tuple[float, ...], guess: Array) -> TimedState:
@@ -226,9 +230,19 @@ class TimedPath:
             history_variables = now.history_variables.advanced(elastic_stress(self._problem.body, contact.kinematics), step)
         return TimedState(time, loads, contact, history_variables, relaxation)
 
-    def _error(self, state: TimedState) -> float:
-        """Estimated relative error of the stress."""
-        return 0.0 if state.history_variables is None else step_error(self._problem.body, state.history_variables)
+    def _error(self, interval: TimeInterval, state: TimedState) -> float:
+        """Estimated error of the stress over its size, which counts at least as if it had grown all the interval as it does now.
+
+        Why: a body that touches its first points makes a kink, after which the stress has only begun to grow. Beside what there is
+        of it the error of a step with the kink is as large however short the step.
+        """
+        before = self._accepted
+        if state.history_variables is None or before.history_variables is None:
+            return 0.0
+        body = self._problem.body
+        growth = size_of(body, state.history_variables.stress) - size_of(body, before.history_variables.stress)
+        lasting = min(state.time - interval.start, interval.shortest_period / (2 * np.pi))
+        return step_error(body, state.history_variables, max(growth, 0.0) * lasting / (state.time - before.time))
 
 
 @dataclass(frozen=True)
