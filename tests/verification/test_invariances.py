@@ -208,7 +208,7 @@ def test_the_forces_of_a_body_balance(measure):
 
 
 def test_a_small_load_is_followed_as_closely_in_time_as_one_a_hundred_times_larger():
-    """Both in the linear range. An error that counts by at least 1e-7 of the modulus takes 83 steps instead of 106: 2.5e-4 off."""
+    """Both in the linear range. An error that counts by at least 1e-7 of the modulus takes 83 steps, not 106: 2.5e-4 off."""
 
     def extensions(load: float) -> list[float]:
         cell = [{"length": 1e-3, "cells": 1}]

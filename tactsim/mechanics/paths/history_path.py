@@ -233,8 +233,8 @@ class TimedPath:
     def _error(self, interval: TimeInterval, state: TimedState) -> float:
         """Estimated error of the stress over its size, which counts at least as if it had grown all the interval as it does now.
 
-        Why: a body that touches its first points makes a kink, after which the stress has only begun to grow. Beside what there is
-        of it the error of a step with the kink is as large however short the step.
+        Why: a body that touches its first points makes a kink, after which the stress has only begun to grow. Beside what there
+        is of it the error of a step with the kink is as large however short the step.
         """
         before = self._accepted
         if state.history_variables is None or before.history_variables is None:
