@@ -8,6 +8,9 @@ from tactsim.results.result import Status
 C10, C01, SIDE = 1e3, 250.0, 0.01
 RUBBER = {"kind": "mooney_rivlin_2", "c10": C10, "c01": C01}
 CELLS = [{"length": SIDE, "cells": 2}]
+CELL = [{"length": SIDE, "cells": 1}]
+CUBE = {"kind": "block", "x": CELL, "y": CELL, "z": CELL}
+"""One cell: of states that are the same everywhere."""
 BRICK = {"kind": "block", "x": CELLS, "y": CELLS, "z": CELLS}
 SQUARE = {"kind": "block", "x": CELLS, "y": CELLS}
 ROD = {"kind": "cylinder", "radial": CELLS, "axial": CELLS}

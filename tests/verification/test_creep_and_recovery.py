@@ -8,11 +8,8 @@ from __future__ import annotations
 
 import pytest
 from mutants import assert_kills
+from small_problems import CUBE, EXTENSION, PLANES, SIDE, result_of
 
-from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
-from tactsim.results.result import Status
-
-CELL = [{"length": 1e-3, "cells": 1}]
 TISSUE = {
     "kind": "mooney_rivlin_2",
     "c10": 2e3,
@@ -26,22 +23,16 @@ RECOVERED, TOLERANCE = 1.176586, 1e-4
 
 def stretches(load: float) -> list[float]:
     """Stretch after every step under a nominal stress in Pa that is held for 20 s, then taken off."""
-    planes = [
-        {"kind": "displacement", "face": face, axis: 0.0} for face, axis in (("left", "x"), ("front", "y"), ("bottom", "z"))
-    ]
-    result = BoundaryValueProblem.model_validate(
-        {
-            "dimension": "3d",
-            "geometry": {"kind": "block", "x": CELL, "y": CELL, "z": CELL},
-            "material": TISSUE,
-            "conditions": [*planes, {"kind": "traction", "face": "top", "z": load}],
-            "amplitude": {"pieces": PIECES},
-            "time": {"tolerance": 1e-4},
-            "asked": {"extension": {"kind": "displacement", "at": (0.0, 0.0, 1e-3), "component": "z"}},
-        }
-    ).run()
-    assert result.status is Status.CONVERGED, result.reason
-    return [1 + 1e3 * float(step.values["extension"]) for step in result.steps]
+    result = result_of(
+        geometry=CUBE,
+        material=TISSUE,
+        conditions=[*PLANES, {"kind": "traction", "face": "top", "z": load}],
+        amplitude={"pieces": PIECES},
+        time={"tolerance": 1e-4},
+        steps=10,
+        asked=EXTENSION,
+    )
+    return [1 + float(step.values["number"]) / SIDE for step in result.steps]
 
 
 def test_a_cube_recovers_from_a_stretch_of_six(one_thread, verification_record):

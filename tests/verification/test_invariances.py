@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 from mutants import assert_kills
+from small_problems import CUBE, EXTENSION, PLANES, result_of
 from solids import assert_close, body_of, box, facets_where, held
 
-from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.equilibrium.newton import Problem
@@ -211,25 +211,20 @@ def test_a_small_load_is_followed_as_closely_in_time_as_one_a_hundred_times_larg
     """Both in the linear range. An error that counts by at least 1e-7 of the modulus takes 83 steps, not 106: 2.5e-4 off."""
 
     def extensions(load: float) -> list[float]:
-        cell = [{"length": 1e-3, "cells": 1}]
-        planes = [{"kind": "displacement", "face": face, x: 0.0} for face, x in (("left", "x"), ("front", "y"), ("bottom", "z"))]
         pieces = [
             {"kind": "ramp", "to": 1.0, "duration": 3.0},
             {"kind": "sine", "amplitude": 0.5, "frequency": 0.5, "duration": 4.0},
         ]
-        relaxing = {"kind": "neo_hookean", "c10": 3e3, "relaxation": {"fractions": [0.3, 0.45], "times": [0.2, 8.0]}}
-        result = BoundaryValueProblem.model_validate(
-            {
-                "dimension": "3d",
-                "geometry": {"kind": "block", "x": cell, "y": cell, "z": cell},
-                "material": relaxing,
-                "conditions": [*planes, {"kind": "traction", "face": "top", "z": load}],
-                "amplitude": {"pieces": pieces},
-                "time": {"tolerance": 1e-3},
-                "asked": {"extension": {"kind": "displacement", "at": (0.0, 0.0, 1e-3), "component": "z"}},
-            }
-        ).run()
-        return [step.values["extension"] / load for step in result.steps]
+        result = result_of(
+            geometry=CUBE,
+            material={"kind": "neo_hookean", "c10": 3e3, "relaxation": {"fractions": [0.3, 0.45], "times": [0.2, 8.0]}},
+            conditions=[*PLANES, {"kind": "traction", "face": "top", "z": load}],
+            amplitude={"pieces": pieces},
+            time={"tolerance": 1e-3},
+            steps=10,
+            asked=EXTENSION,
+        )
+        return [step.values["number"] / load for step in result.steps]
 
     large, small = extensions(6e-3), extensions(6e-5)
     assert len(small) == pytest.approx(len(large), abs=3)

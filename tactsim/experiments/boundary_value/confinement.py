@@ -6,20 +6,18 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tactsim.experiments.boundary_value.geometry import MEASURES, Dimension
 from tactsim.experiments.boundary_value.motions import Held
 from tactsim.experiments.boundary_value.parts import Parts
-from tactsim.fem.assembly.space import TaylorHood
 
 ROUND_OFF = 1e-9
 """Change of the volume by a free displacement, over the largest, that is none."""
 
 
-def is_confined(parts: Parts, held: Sequence[Held], dimension: Dimension) -> bool:
+def is_confined(parts: Parts, held: Sequence[Held]) -> bool:
     r"""Whether no displacement that is left free changes the volume: :math:`\int v \cdot n\, dA = 0` for all of them."""
     mesh = parts.domain.mesh
     facets, _ = mesh.boundary_facets()
-    points = TaylorHood(mesh.nodes, mesh.elements, MEASURES[dimension]).surface_points(facets)
+    points = parts.space.surface_points(facets)
     swept = np.zeros_like(mesh.nodes)
     np.add.at(swept, points.nodes, np.einsum("qa,q,iq->qai", points.values, points.weights, points.normals))
     change = np.abs(swept).ravel()

@@ -30,6 +30,7 @@ from tactsim.plotting.canvas import (
     scale_of,
 )
 from tactsim.plotting.plane_cut import FACES, QUARTERS
+from tactsim.refusals import unit_at
 from tactsim.results import FieldFrame, Result
 from tactsim.results.fields import DISPLACEMENT, VON_MISES
 from tactsim.units import format_quantity
@@ -37,8 +38,6 @@ from tactsim.units import format_quantity
 TITLE = "Boundary value problem"
 VIEW = np.array([0.55, -0.75, 0.40])
 """Direction from a body in space to the eye."""
-UNITS = {"displacement": "m", "point": "m", "rotation": "rad", "pressure": "Pa", "traction": "Pa", "force": "N"}
-"""Of what a condition prescribes, by its kind."""
 RIGID_COLOUR, GRID = "#c8ccd2", 250
 """Of a rigid body, and the points per direction on which its outline is traced."""
 MOST_CURVES = 6
@@ -117,12 +116,10 @@ def _draw_conditions(axis: Axes, problem: BoundaryValueSetup) -> None:
 
 def _in_words(condition: AnyCondition) -> str:
     """Where a condition acts and what it prescribes, at a factor of one."""
-    kind, where = condition.kind, getattr(condition, "face", None)
-    sizes = {name: getattr(condition, name, None) for name in ("x", "y", "z", "r", "angle", "pressure")}
+    kind, where, of = condition.kind, getattr(condition, "face", None), type(condition)
+    sizes = {name: size for name in of.model_fields if isinstance(size := getattr(condition, name), float)}
     given = [
-        (f"{name} = " if len(name) == 1 else "") + format_quantity(size, UNITS[kind])
-        for name, size in sizes.items()
-        if size is not None
+        (f"{name} = " if len(name) == 1 else "") + format_quantity(size, unit_at(of, {}, (name,))) for name, size in sizes.items()
     ]
     place = f"point {place_in_words(condition.at)}" if isinstance(condition, PointCondition) else str(where)
     return f"{place}: {' '.join([kind.replace('point', 'displacement'), ', '.join(given)]).strip()}"

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from tactsim.array import Array
 from tactsim.experiments.boundary_value.asked import place_in_words
 from tactsim.experiments.boundary_value.conditions import FaceCondition
-from tactsim.experiments.boundary_value.geometry import AXES, Dimension, Geometry
+from tactsim.experiments.boundary_value.geometry import AXES, MEASURES, Dimension, Geometry
 from tactsim.mesh.graded.mapped import Domain
 from tactsim.units import format_quantity
+
+if TYPE_CHECKING:
+    from tactsim.fem.assembly.space import TaylorHood
 
 AT_NODE = 1e-9
 """Distance from a corner or a border of the mesh, over the body's size, that is round-off."""
@@ -21,10 +25,10 @@ AT_NODE = 1e-9
 
 @dataclass(frozen=True)
 class Parts:
-    """A meshed body with the names of its ``axes``; errors begin with the key that is to blame, such as ``face``."""
+    """A meshed body; errors begin with the key that is to blame, such as ``face``."""
 
     domain: Domain
-    axes: tuple[str, ...]
+    dimension: Dimension
 
     @classmethod
     @lru_cache(maxsize=1)
@@ -39,9 +43,21 @@ class Parts:
             If the cells are too many.
         """
         try:
-            return cls(geometry.domain(dimension), AXES[dimension])
+            return cls(geometry.domain(dimension), dimension)
         except ValueError as error:
             raise ValueError(f"geometry: {error}") from None
+
+    @property
+    def axes(self) -> tuple[str, ...]:
+        """Names of the coordinates."""
+        return AXES[self.dimension]
+
+    @cached_property
+    def space(self) -> TaylorHood:
+        """Displacements and pressures on the mesh."""
+        from tactsim.fem.assembly.space import TaylorHood  # not for a wrong word in a case
+
+        return TaylorHood(self.domain.mesh.nodes, self.domain.mesh.elements, MEASURES[self.dimension])
 
     @property
     def size(self) -> float:

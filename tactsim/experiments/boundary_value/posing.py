@@ -17,7 +17,6 @@ from tactsim.experiments.boundary_value.conditions import (
     PressureCondition,
     TractionCondition,
 )
-from tactsim.experiments.boundary_value.geometry import AXES, MEASURES
 from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import AT_NODE, Parts
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
@@ -25,7 +24,7 @@ from tactsim.experiments.boundary_value.touch import touch_of
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.dead_load import DeadTraction
 from tactsim.fem.assembly.pressure import FollowerPressure
-from tactsim.fem.assembly.space import SurfacePoints, TaylorHood
+from tactsim.fem.assembly.space import SurfacePoints
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.mechanics.contact.posed_contact import PosedContact
@@ -62,13 +61,7 @@ class PosedProblem:
 
 
 def posed(problem: BoundaryValueSetup) -> PosedProblem:
-    """The model of a problem.
-
-    Raises
-    ------
-    InputError
-        If a face, a part of it or a point is not there, or two conditions contradict each other.
-    """
+    """The model of a problem, which was checked as it was read: the body has what its conditions name."""
     return _Posing(problem).posed()
 
 
@@ -76,11 +69,10 @@ class _Posing:
     """Looks up what the conditions of a problem name."""
 
     def __init__(self, problem: BoundaryValueSetup):
-        self._problem, self._axes = problem, AXES[problem.dimension]
-        self._parts = Parts.of(problem.geometry, problem.dimension)
+        self._problem, self._parts = problem, Parts.of(problem.geometry, problem.dimension)
         mesh = self._parts.domain.mesh
         self._mesh, self._dim = mesh, mesh.dim
-        self._body = Body(TaylorHood(mesh.nodes, mesh.elements, MEASURES[problem.dimension]), [problem.material], mesh.regions)
+        self._body = Body(self._parts.space, [problem.material], mesh.regions)
         self._size = self._parts.size
 
     def posed(self) -> PosedProblem:
@@ -123,17 +115,17 @@ class _Posing:
         else:
             area = float(points.weights.sum()) if isinstance(condition, ForceCondition) else 1.0
             traction = np.zeros_like(points.normals)
-            for axis, value in condition.along(self._axes).items():
+            for axis, value in condition.along(self._parts.axes).items():
                 traction[axis] = value / area
         return DeadTraction(self._surface(points), traction, len(self._body.pattern.indices)), 1.0
 
     def _contact(self, condition: ContactCondition) -> MovedContact:
         """A rigid body at first touch."""
-        touch = touch_of(self._parts, condition, self._problem.dimension)
+        touch = touch_of(self._parts, condition)
         pair = ContactPair(touch.body, condition.law)
         contact = PosedContact.apart(self._surface(touch.points), touch.reference, pair, touch.place)
         displacement = np.zeros(self._dim)
-        for number, value in (condition.along(self._axes) if condition.moves else {}).items():
+        for number, value in (condition.along(self._parts.axes) if condition.moves else {}).items():
             displacement[number] = value
         return MovedContact(contact, displacement)
 

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from tactsim.errors import ConvergenceError, InputError
+from tactsim.errors import ConvergenceError
 from tactsim.experiments.boundary_value.conditions import SIDES
 from tactsim.experiments.boundary_value.limit_load import LimitLoad
 from tactsim.experiments.boundary_value.posing import PosedProblem, posed
@@ -62,37 +62,22 @@ class AskedTimes(TimeStepPolicy):
 
 
 def boundary_value_course(problem: BoundaryValueSetup) -> Course:
-    """The run of a problem.
-
-    Raises
-    ------
-    InputError
-        If a condition names what the body has not.
-    """
+    """The run of a problem."""
     path, record = _begun(problem)
     limit = LimitLoad(record.model, path.start)
     return Course(_accepted(record, path, limit), record.findings, setup_is_timed=True)
 
 
 def unloaded_problem(problem: BoundaryValueSetup) -> Findings:
-    """The body, and the rigid bodies at first touch.
-
-    Raises
-    ------
-    InputError
-        If a condition names what the body has not.
-    """
+    """The body, and the rigid bodies at first touch."""
     path, record = _begun(problem)
     return record.unloaded(path.start)
 
 
 def _begun(problem: BoundaryValueSetup) -> tuple[TimedPath, BoundaryValueRecord]:
     """The path of a problem at its start, and what will record it."""
-    try:
-        model = posed(problem)
-        probes = Probes(problem, model)
-    except ValueError as error:
-        raise InputError(str(error)) from error
+    model = posed(problem)
+    probes = Probes(problem, model)
     histories = [(problem.amplitude if one is None else one.amplitude or problem.amplitude).history() for one in model.followed]
     materials = [problem.material]
     relaxes = problem.material.relaxation is not None

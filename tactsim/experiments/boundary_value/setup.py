@@ -117,7 +117,7 @@ class BoundaryValueSetup(FrozenModel):
         parts = Parts.of(self.geometry, self.dimension)
         held = motions_of(parts, self.conditions)
         for number, contact in enumerate(self.contacts):
-            _blaming(f"contacts.{number}.", self._check_touch, contact, parts)
+            _blaming(f"contacts.{number}.", _check_touch, parts, contact)
         for name, one in self.asked.items():
             if isinstance(one, AskedForce | AskedTorque):
                 _blaming(f"asked.{name}.", parts.face, one.face)
@@ -137,18 +137,12 @@ class BoundaryValueSetup(FrozenModel):
         """Check that an incompressible body may give way somewhere."""
         from tactsim.experiments.boundary_value.confinement import is_confined
 
-        if self.material.bulk_modulus is None and is_confined(parts, held, self.dimension):
+        if self.material.bulk_modulus is None and is_confined(parts, held):
             raise ValueError(
                 "conditions: the body is confined on all sides and its material incompressible, so that its volume cannot change "
                 "and its pressure is arbitrary; give the material a bulk_modulus, or a poisson_ratio below 0.5, or leave a face "
                 "free"
             )
-
-    def _check_touch(self, contact: ContactCondition, parts: Parts) -> None:
-        """Check that a rigid body meets its face."""
-        from tactsim.experiments.boundary_value.touch import touch_of
-
-        touch_of(parts, contact, self.dimension)
 
     def _check_point(self, one: AskedDisplacement | AskedStress, parts: Parts) -> None:
         """Check that the body has the point, and such a stress there."""
@@ -186,6 +180,13 @@ class BoundaryValueSetup(FrozenModel):
             raise ValueError(f"at: the axis of a rigid body is that of the body, r = 0, and not {radius} away in axisymmetric")
         if self.dimension == "axisymmetric" and condition.r:
             raise ValueError("r: a rigid body moves along the axis only in axisymmetric, not away from it")
+
+
+def _check_touch(parts: Parts, contact: ContactCondition) -> None:
+    """Check that a rigid body meets its face."""
+    from tactsim.experiments.boundary_value.touch import touch_of  # not for a wrong word in a case
+
+    touch_of(parts, contact)
 
 
 def _blaming(key: str, check: Callable[..., object], *values: object) -> None:

@@ -9,9 +9,8 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.contact.turned import Turned
 from tactsim.experiments.boundary_value.conditions import SIDES, ContactCondition
-from tactsim.experiments.boundary_value.geometry import MEASURES, Dimension
 from tactsim.experiments.boundary_value.parts import Parts
-from tactsim.fem.assembly.space import SurfacePoints, TaylorHood
+from tactsim.fem.assembly.space import SurfacePoints
 from tactsim.interfaces import RigidBody
 from tactsim.mechanics.contact.first_touch import first_touch
 
@@ -29,7 +28,7 @@ class Touch:
     place: Array
 
 
-def touch_of(parts: Parts, condition: ContactCondition, dimension: Dimension) -> Touch:
+def touch_of(parts: Parts, condition: ContactCondition) -> Touch:
     """Where the rigid body of a condition touches.
 
     Raises
@@ -38,8 +37,8 @@ def touch_of(parts: Parts, condition: ContactCondition, dimension: Dimension) ->
         If it passes beside the face; the message begins with the key that is to blame.
     """
     mesh, facets = parts.domain.mesh, parts.facets(condition)
-    points = TaylorHood(mesh.nodes, mesh.elements, MEASURES[dimension]).surface_points(facets)
-    axis = SIDES[dimension][condition.side]
+    points = parts.space.surface_points(facets)
+    axis = SIDES[parts.dimension][condition.side]
     body = condition.body if axis[-1] == 1.0 else Turned.of(condition.body, axis)
     away, origin = np.array(axis), np.zeros(mesh.dim) if condition.at is None else np.array(condition.at)
     nodes = mesh.nodes[np.unique(facets)].T
