@@ -52,6 +52,25 @@ def read_columns(path: str | Path, units: dict[str, str], *, complete: bool = Fa
     return {name: values[:, k] * factor for k, (name, factor) in enumerate(header)}
 
 
+def tests_by(columns: dict[str, Array], name: str, unit: str, fewest: int) -> Iterator[tuple[float, dict[str, Array]]]:
+    """Each value of a column, ascending, with the other columns of the rows that have it: the tests of one file.
+
+    Raises
+    ------
+    InvalidQuantity
+        If one has less than the ``fewest`` rows.
+    """
+    values = columns[name]
+    for value in np.unique(values):
+        rows = values == value
+        if rows.sum() < fewest:
+            raise InvalidQuantity(
+                f"the {name} {value:g} {unit} stands in {rows.sum()} rows; allowed: at least {fewest} for each {name}, by which "
+                f"tests are told apart: write the {name} that was set, not the one that was measured"
+            )
+        yield float(value), {other: column[rows] for other, column in columns.items() if other != name}
+
+
 @contextmanager
 def of_file(path: str | Path) -> Iterator[None]:
     """Names the file in what is refused of the numbers that were read from it.

@@ -12,7 +12,7 @@ import scipy
 from tactsim.analytic.spectrum import checked_number, read_only, real_array
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.columns import of_file, read_columns
+from tactsim.identification.columns import of_file, read_columns, tests_by
 from tactsim.identification.dma_data import DmaData
 
 COLUMNS = {"time": "s", "load": "N", "displacement": "m"}
@@ -145,19 +145,13 @@ def read_dma_tests(path: str | Path, *, area: float, height: float) -> list[DmaS
         If a unit or a column is missing or the signals of a test do not determine a modulus, with file and frequency.
     """
     columns = read_columns(path, {"frequency": "Hz"} | COLUMNS, complete=True)
-    tests, frequencies = [], columns.pop("frequency")
-    for frequency in np.unique(frequencies):
-        rows = frequencies == frequency
-        if rows.sum() < FEWEST_SAMPLES:
-            raise InvalidQuantity(
-                f"{path}: the frequency {frequency:g} Hz stands in {rows.sum()} rows; allowed: at least {FEWEST_SAMPLES} for "
-                "each frequency, by which tests are told apart: write the frequency that was set, not the one that was measured"
-            )
-        try:
-            signals = {name: values[rows] for name, values in columns.items()}
-            tests.append(DmaSignals(**signals, frequency=float(frequency), area=area, height=height))
-        except InvalidQuantity as error:
-            raise InvalidQuantity(f"{path}: test at {frequency:g} Hz: {error}") from None
+    tests = []
+    with of_file(path):
+        for frequency, signals in tests_by(columns, "frequency", "Hz", FEWEST_SAMPLES):
+            try:
+                tests.append(DmaSignals(**signals, frequency=frequency, area=area, height=height))
+            except InvalidQuantity as error:
+                raise InvalidQuantity(f"test at {frequency:g} Hz: {error}") from None
     return tests
 
 

@@ -12,7 +12,7 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.columns import of_file, read_columns
+from tactsim.identification.columns import of_file, read_columns, tests_by
 from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
 from tactsim.sensors.films.film_equations import creep_strain
 
@@ -140,16 +140,11 @@ def read_creep(path: str | Path) -> list[CreepTest]:
         If a column is missing or a row is wrong, with file and line, or no creep can be fitted to a test, with the file.
     """
     columns = read_columns(path, {"time": "s", "force": "N", "strain": "1"}, complete=True)
-    chosen = [(force, columns["force"] == force) for force in np.unique(columns["force"])]
-    tests = [CreepTest(float(force), columns["time"][rows], columns["strain"][rows]) for force, rows in chosen]
+    tests = []
     with of_file(path):
-        for test in tests:
-            if len(test.time) < FEWEST_SAMPLES:
-                raise InvalidQuantity(
-                    f"the force {test.force:g} N stands in {len(test.time)} rows; allowed: at least {FEWEST_SAMPLES} for each "
-                    "force, by which tests are told apart: write the force that was set, not the one that was measured"
-                )
-            _check(test)
+        for force, signals in tests_by(columns, "force", "N", FEWEST_SAMPLES):
+            tests.append(CreepTest(force, **signals))
+            _check(tests[-1])
     return tests
 
 
