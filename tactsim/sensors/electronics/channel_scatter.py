@@ -13,6 +13,9 @@ from tactsim.model import FrozenModel
 from tactsim.sensors.electronics.calibration import LinearCalibration
 from tactsim.units import Force
 
+GAINS = 1
+"""Names the stream of random numbers: the noise of a reading, which may have the same seed, draws others."""
+
 
 class ChannelScatter(FrozenModel):
     r"""Gain of every channel's conductance, so large that a reading at full scale has the stated standard deviation.
@@ -48,7 +51,7 @@ class ChannelScatter(FrozenModel):
                 f"the line does not conduct at the full scale of {self.full_scale:g} N; lower the intercept's size"
             )
         spread = self.repeatability * self.full_scale / reach
-        gains = 1 + spread * np.random.default_rng(self.seed).standard_normal(channels)
+        gains = 1 + spread * np.random.default_rng([GAINS, self.seed]).standard_normal(channels)
         if not np.all(gains > 0):
             raise InvalidQuantity(
                 f"a spread of {spread:g} makes a gain negative; lower the repeatability or the intercept's size"

@@ -43,6 +43,16 @@ def test_channels_differ_by_the_seed_of_their_scatter():
     assert np.ptp(PLAIN.read(TIMES, np.full((2, 2, 3, 3), 0.3), AREA).voltage[-1]) == 0
 
 
+def test_noise_does_not_repeat_the_scatter_of_the_same_seed():
+    readout = MatrixReadout(chain=SignalChain(sampling_rate=200.0, low_pass=None, noise={"white": 1e-3}))
+    assert readout.scatter.seed == readout.seed
+    shape = (1, 2, 30, 30)
+    noise = readout.read(np.array([5.0]), np.zeros(shape), AREA).voltage[0]
+    gains = readout.scatter.gains(shape[1:], readout.line(AREA))
+    # 0.024 is one standard deviation for 1800 independent pairs
+    assert abs(np.corrcoef(noise.ravel(), gains.ravel())[0, 1]) < 0.1
+
+
 def test_a_pull_reads_as_no_force_and_is_reported():
     pulled = FORCES.copy()
     pulled[-1, 0, 0, 0] = -1e-3
