@@ -7,12 +7,15 @@ traction from the slip since the last accepted step, cut back to the friction li
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
+from typing import Any, TypeVar
 
 import numpy as np
 
 from tactsim.array import Array
 from tactsim.interfaces import ContactLaw, RigidBody
+
+Record = TypeVar("Record", "ContactState", "ContactIterate", "ContactPair")
 
 AT_LIMIT = 1e-9
 """A point slips if its tangential traction is within this part of the limit."""
@@ -238,3 +241,10 @@ class ContactPair:
         d_ratio = d_out / cosine - out_of_plane / cosine**2 * d_cosine
         turned_slope = -both[:, None] * d_ratio[None, :] - out_of_plane / cosine * hessian
         return turned - self.tangential_penalty * slip, turned_slope - self.tangential_penalty * slip_slope
+
+
+def at_points(record: Record, points: Array) -> Record:
+    """A record of a contact at some of its points, by their numbers (m,): the last axis of its arrays counts the points."""
+    values = ((field.name, getattr(record, field.name)) for field in fields(record))
+    chosen: dict[str, Any] = {name: value[..., points] for name, value in values if isinstance(value, np.ndarray)}
+    return replace(record, **chosen)

@@ -93,7 +93,9 @@ class Body:
         self.space = space
         self.materials = tuple(materials)
         self.regions = np.asarray(regions)
+        self.numbers = np.arange(len(self.regions))
         self.points = space.volume_points(quadrature_order)
+        self.quadrature_order, self.stabilisation = quadrature_order, volume_stiffness
         self.linear = np.array([m.small_strain for m in materials])[self.regions]
         self.forms = tuple(compiled_form(material) for material in materials)
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]

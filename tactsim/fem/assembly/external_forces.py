@@ -47,6 +47,9 @@ class Interface(Protocol[Iterate, Now]):
     def surface(self) -> SurfaceAssembly:
         """The surface that the forces act on."""
 
+    def of_part(self, surface: SurfaceAssembly, points: Array) -> Interface[Iterate, Now]:
+        """The same forces on a part of the surface, of which the ``points`` (m,) are these."""
+
     def start(self) -> Iterate:
         """The iterated forces at the beginning."""
 

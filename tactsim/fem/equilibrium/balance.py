@@ -89,7 +89,7 @@ class Balance:
         """
         interfaces, control = self.forces.interfaces, self.forces.load_control
         internal = self.body.residual(unknowns, kinematics)
-        largest = float(np.abs(internal[: self.body.space.displacement_size]).max())
+        largest = self.constraints.largest(internal[: self.body.space.displacement_size])
         internal -= self.forces.nodal(self.body.space.split(unknowns)[0], self.body.space.size)
         moved = point_displacements(self.body, unknowns, interfaces, control, rigid_displacement)
         tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
@@ -106,10 +106,10 @@ class Balance:
         """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
         error over the mean nodal volume; and the root of the sum of all squared unbalanced forces in N."""
         residual, split = internal.copy(), self.body.space.displacement_size
-        scale = max(largest, float(np.abs(internal[:split]).max()))
+        scale = max(largest, self.constraints.largest(internal[:split]))
         for interface, traction, lost in zip(self.forces.interfaces, tractions, rounding, strict=True):
             force = interface.surface.force(traction)
-            scale = max(scale, float(np.abs(force).max()))
+            scale = max(scale, self.constraints.largest(force))
             residual -= force
             noise = noise + interface.surface.largest_force(lost)[:split]
         residual = self.constraints.free(residual)

@@ -9,10 +9,13 @@ from tactsim.fem.assembly.pattern import Pattern
 
 
 class Constraints:
-    """Unknowns with prescribed values, which the initial guess holds and Newton does not change."""
+    """Unknowns with prescribed values, which the initial guess holds and Newton does not change.
 
-    def __init__(self, fixed: Array, pattern: Pattern):
-        self.fixed = np.unique(fixed)
+    ``reactions_count`` says whether the forces that hold them are among those that residuals are measured by.
+    """
+
+    def __init__(self, fixed: Array, pattern: Pattern, *, reactions_count: bool = True):
+        self.fixed, self.reactions_count = np.unique(fixed), reactions_count
         held = np.zeros(pattern.size, bool)
         held[self.fixed] = True
         rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
@@ -30,3 +33,8 @@ class Constraints:
         out = residual.copy()
         out[self.fixed] = 0.0
         return out
+
+    def largest(self, forces: Array) -> float:
+        """Largest of the forces (size,) or (m,) of the first unknowns that residuals are measured by."""
+        counted = forces if self.reactions_count else np.delete(forces, self.fixed[self.fixed < len(forces)])
+        return float(np.abs(counted).max())

@@ -19,7 +19,7 @@ def element_in_words(body: Body, element: int) -> str:
     """Number, undeformed centroid and region of an element."""
     corners = body.space.nodes[body.space.elements[element, : body.space.dim + 1]]
     place = ", ".join(f"{1e3 * coordinate:.4g}" for coordinate in corners.mean(axis=0))
-    return f"element {element} at ({place}) mm in region {body.regions[element]}"
+    return f"element {body.numbers[element]} at ({place}) mm in region {body.regions[element]}"
 
 
 def inside_out_in_words(body: Body, kinematics: Kinematics) -> str:

@@ -8,9 +8,7 @@ from scipy.sparse import csr_matrix
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned, pressure_mass
-from tactsim.fem.solvers.linear import IterativeSolver, LinearSolver, SuperLU, has_pardiso
-from tactsim.fem.solvers.mirror_images import ReducedMatrices, mirror_images
-from tactsim.fem.solvers.mirrored_solver import MirroredSolver
+from tactsim.fem.solvers.linear import LinearSolver, SuperLU, has_pardiso
 from tactsim.fem.solvers.pardiso import FactorSize, QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
@@ -51,43 +49,17 @@ def iteration_seconds(unknowns: float) -> float:
 
 
 def solver_for(body: Body) -> LinearSolver:
-    """A factor that is reused, or the iteration, whichever costs less in this body by the size of its factor.
-
-    Where planes mirror the body onto itself it is the factor of a part, as long as they mirror what acts on the body, too.
-    """
-    if not has_pardiso() and body.space.size <= LARGEST_SUPERLU:
-        return SuperLU()
-    part = part_solver(body)
-    return whole_solver(body) if part is None else Relay(part, lambda: whole_solver(body))
-
-
-def part_solver(body: Body) -> MirroredSolver | None:
-    """The factor of a part of a body that stands for all; None where none does, or the iteration of the whole costs less."""
-    images = mirror_images(body) if has_pardiso() else None
-    if images is None or len(images.first) > LARGEST_FACTOR:
-        return None
-    reduced, guide = ReducedMatrices(images, _ones(body)), QuasiDefinitePardiso(giving_way(body)[images.first])
-    if not _is_factored(guide, reduced.of(_ones(body)), body.space.size):
-        return None
-    return MirroredSolver(images, reduced, factored(guide))
-
-
-def whole_solver(body: Body) -> IterativeSolver:
-    """The solver of a body of which no part stands for the others."""
-    if body.space.size > LARGEST_FACTOR:
+    """A factor that is reused, or the iteration, whichever costs less in this body by the size of its factor."""
+    size = body.space.size
+    if size > LARGEST_FACTOR:
         return BlockPreconditioned(body)
     if not has_pardiso():
-        return iterated(body)
+        return iterated(body) if size > LARGEST_SUPERLU else SuperLU()
     guide = QuasiDefinitePardiso(giving_way(body))
-    return factored(guide) if _is_factored(guide, _ones(body), body.space.size) else iterated(body)
-
-
-def _is_factored(guide: QuasiDefinitePardiso, pattern: csr_matrix, unknowns: int) -> bool:
-    """Whether factors of this pattern cost less than the iteration of a body of so many unknowns; otherwise closes the guide."""
-    if unknowns < SMALLEST_ITERATED or factor_seconds(guide.analyse(pattern)) <= iteration_seconds(unknowns):
-        return True
+    if size < SMALLEST_ITERATED or factor_seconds(guide.analyse(_ones(body))) <= iteration_seconds(size):
+        return factored(guide)
     guide.close()
-    return False
+    return iterated(body)
 
 
 def section_solver() -> LinearSolver:

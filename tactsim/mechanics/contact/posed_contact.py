@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.contact.traction import ContactIterate, ContactPair, ContactState, ContactTraction
+from tactsim.contact.traction import ContactIterate, ContactPair, ContactState, ContactTraction, at_points
 from tactsim.fem.assembly.surface import SurfaceAssembly
 
 ROUND_OFF = 4 * np.finfo(float).eps
@@ -37,6 +37,12 @@ class PosedContact:
         """A pair whose surfaces have not met yet."""
         points = reference - place[:, None]
         return cls(surface, reference, pair, place, ContactState.untouched(points, pair.body.signed_distance(points)[1]))
+
+    def of_part(self, surface: SurfaceAssembly, points: Array) -> PosedContact:
+        """The same pair on a part of the surface, of which the ``points`` (m,) are these; how its forces grew is left behind."""
+        begin = None if self.begin is None else at_points(self.begin, points)
+        pair, state = at_points(self.pair, points), at_points(self.state, points)
+        return PosedContact(surface, self.reference[:, points], pair, self.place, state, begin=begin)
 
     def gap(self, displacement: Array) -> Array:
         """Gap (n,) in m at displacements (d, n) of the points, negative where they are in the body."""

@@ -16,6 +16,8 @@ from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.regularising_springs import RegularisingSprings
 from tactsim.fem.assembly.space import FACET_POINTS, TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.mirrored_part import mirrored_part
+from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.solvers.solver_choice import solver_for
@@ -75,9 +77,15 @@ class GraspModel:
         self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in JAWS}
         self.references = {side: points[side].interpolate(mesh.nodes) for side in JAWS}
         self.offsets = {side: np.asarray(offset, float) for side, offset in zip(JAWS, offsets, strict=True)}
-        options = NewtonOptions(start_patience=START_PATIENCE)
-        self.problem = Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=options)
+        self.problem = self._posed(NewtonOptions(start_patience=START_PATIENCE))
         self.springs = RegularisingSprings(self.body)
+
+    def _posed(self, options: NewtonOptions) -> Problem:
+        """The problem of the block, or of a part of it that stands for the whole."""
+        part = mirrored_part(self.body)
+        if part is not None:
+            return MirroredProblem(part, options=options)
+        return Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=options)
 
     def touching_place(self, side: str) -> Array:
         """Place (3,) in m of a jaw's middle at which it first touches the undeformed block.

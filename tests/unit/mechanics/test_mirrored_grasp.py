@@ -1,0 +1,90 @@
+"""A grasp that planes mirror: solved for a part, it is the grasp that is solved whole.
+
+Mutants: the whole of a prescribed force on a part, contact points of another part, history of other elements, the whole not
+looked at.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+
+from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.jaw import Jaw
+from tactsim.contact.penalty import Augmentation
+from tactsim.fem.assembly.body import RelaxationStep
+from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.fem.solvers.solver_choice import solver_for
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.models.block_model import START_PATIENCE, GraspModel
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.graded.block import graded_block
+
+SIZE, CLOSING, TOLERANCE = (20e-3, 16e-3, 10e-3), 0.3e-3, 1e-8
+COARSE = BlockMeshSettings(size=8e-3, edge_size=3e-3, growth=1)
+MATERIAL = NeoHookean(c10=1000.0, bulk_modulus=2e6)
+
+
+def model(shift=0.0):
+    """A plain block between jaws, the upper one moved along x by ``shift``."""
+    block = graded_block(SIZE, (), COARSE)
+    jaws = [Jaw(width=40e-3, depth=40e-3, fillet=1e-3, side=side) for side in JAWS]
+    offsets = np.array([[SIZE[0] / 2 + shift, SIZE[1] / 2], [SIZE[0] / 2, SIZE[1] / 2]])
+    return GraspModel(block.mesh, [MATERIAL], block.facets, jaws=jaws, offsets=offsets)
+
+
+def solved_whole(one):
+    """The same model with nothing mirrored."""
+    options = NewtonOptions(start_patience=START_PATIENCE)
+    one.problem = Problem(one.body, np.zeros(0, int), solver=solver_for(one.body), options=options)
+    return one
+
+
+def grasped(one, **action):
+    start = one.start(Coulomb(friction=0.4), Augmentation(TOLERANCE, softest=4e3, switch_length=5e-3, softness=1e-5))
+    half = one.equilibrium(start, CLOSING / 2, one.compressed(CLOSING / 2))
+    return one.equilibrium(half, CLOSING, 2 * half.unknowns, **action)
+
+
+def assert_same(one, part, whole):
+    """Up to what the penetration and the slip that are allowed leave open, by which the first half of the way differs, too."""
+    assert part.load == pytest.approx(whole.load, abs=TOLERANCE)
+    (u, p), (u_whole, p_whole) = (one.space.split(state.unknowns) for state in (part, whole))
+    assert_allclose(u, u_whole, rtol=0, atol=1e-3 * CLOSING)
+    assert_allclose(p, p_whole, rtol=0, atol=2e-3 * np.abs(p_whole).max())
+    for mine, asked in zip(part.contacts, whole.contacts, strict=True):
+        total = asked.state.traction @ asked.surface.points.weights
+        assert_allclose(mine.state.traction @ mine.surface.points.weights, total, rtol=0, atol=1e-4 * np.abs(total).max())
+
+
+@pytest.mark.parametrize("force", [None, 0.5])
+def test_the_part_is_grasped_as_the_whole(force):
+    mirrored = model()
+    assert isinstance(mirrored.problem, MirroredProblem)
+    solver = mirrored.problem.solver
+    assert_same(mirrored, grasped(mirrored, force=force), grasped(solved_whole(model()), force=force))
+    assert mirrored.problem.solver is solver, "the whole was not solved"
+
+
+def test_tissue_that_relaxes_is_mirrored_too():
+    mirrored = model()
+    shape = mirrored.body.points.weights.shape
+    centre = mirrored.mesh.nodes[mirrored.mesh.elements].mean(axis=1)
+    apart = np.abs(centre / SIZE - 0.5)
+    stress = np.zeros((6, *shape))
+    stress[0] = 200.0 * apart[:, :1]
+    step = RelaxationStep(0.5 + apart[:, 2], stress)
+    solver = mirrored.problem.solver
+    assert_same(mirrored, grasped(mirrored, relaxation=step), grasped(solved_whole(model()), relaxation=step))
+    assert mirrored.problem.solver is solver, "the whole was not solved"
+
+
+def test_a_jaw_aside_is_no_image_and_the_whole_is_solved():
+    aside = model(shift=4e-3)
+    solver = aside.problem.solver
+    assert_same(aside, grasped(aside), grasped(solved_whole(model(shift=4e-3))))
+    assert aside.problem.solver is not solver
