@@ -28,7 +28,11 @@ from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
 
-AskedName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,60}$")]
+AskedName = Annotated[
+    str,
+    StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,60}$"),
+    Field(description="a name: a letter and up to 60 further letters, digits or underscores"),
+]
 RECORDED = {
     "time": "s",
     "min_volume_ratio": "1",
