@@ -1,19 +1,18 @@
 """A sphere pressed into relaxing tissue and withdrawn, until the tissue loses touch with it and goes on recovering.
 
-Reference: while the contact grows, the force is the fading memory of the elastic one; while it shrinks, it is that of the force up to
-the time t1 at which the contact was as large (Ting 1966, doi:10.1115/1.3625192, equations for contacts of revolution):
+Reference: while the contact grows, the force is the fading memory of the elastic one; while it shrinks, it is that of the force
+up to the time t1 at which the contact was as large (Ting 1966, doi:10.1115/1.3625192):
 
 .. math:: P(t) = \\int_0^{t_1} g(t - s)\\, dP_e(\\delta(s)), \\qquad \\int_{t_1}^t g(t - s)\\, \\dot\\delta(s)\\, ds = 0
 
-It holds for an incompressible layer of any thickness, and with the elastic force of the same mesh for the mesh, whose contact grows
-from node to node. Mutants: the memory of the whole elastic force, as if the tissue stuck to the sphere (Lee & Radok 1960), another
-relaxation time, and no relaxation.
+It holds for an incompressible layer of any thickness, and with the elastic force of the same mesh for the mesh, whose contact
+grows from node to node. Mutants: the memory of the whole elastic force, as if the tissue stuck to the sphere (Lee & Radok 1960),
+another relaxation time, and no relaxation.
 """
 
 from __future__ import annotations
 
 import numpy as np
-import pytest
 from mutants import assert_kills
 from scipy.integrate import quad
 from scipy.interpolate import PchipInterpolator
@@ -87,7 +86,9 @@ def test_a_sphere_is_withdrawn_from_relaxing_tissue(one_thread, verification_rec
     assert (computed[gone] == 0).all()
     stuck = [memory(lambda s: elastic(1 - np.abs(1 - np.minimum(s, 2))), now, now) for now in time]
     known = {"reference": "Ting 1966", "kind": "exact", "mesh": "12 by 6 cells", "tolerance": TOLERANCE}
-    verification_record("force on a withdrawn sphere over its peak", computed / reference.max(), reference / reference.max(), **known)
+    verification_record(
+        "force on a withdrawn sphere over its peak", computed / reference.max(), reference / reference.max(), **known
+    )
     assert_kills(
         check,
         stuck=(np.array(stuck),),

@@ -114,7 +114,7 @@ class Probes:
         isochoric = material.stored_energy(state.kinematics.F)  # type: ignore[attr-defined]
         volumetric = np.zeros(isochoric.shape)
         if material.bulk_modulus is not None:
-            # The pressure's energy, not that of J at each point, which differs from what the pressure asks for by the mesh's error.
+            # That of the pressure: J at single points misses what the pressure asks for by the error of the mesh.
             isochoric = isochoric - material.bulk_modulus / 2 * material.volume_change(state.kinematics.F) ** 2
             volumetric = body.pressure(state.unknowns) ** 2 / (2 * material.bulk_modulus)
         lasting = 1.0 if material.relaxation is None else material.relaxation.amplitudes[0]

@@ -109,8 +109,8 @@ class BoundaryValueSetup(FrozenModel):
                 raise ValueError(f"asked.{name}: there is no component {component}; allowed: {', '.join(axes)}")
             if one.kind == "energy" and not hasattr(self.material, "stored_energy"):
                 raise ValueError(
-                    f"asked.{name}: the material {self.material.kind} gives no energy; write its method stored_energy(F) in J/m^3, or "
-                    "ask for the force and the displacement of what does the work"
+                    f"asked.{name}: the material {self.material.kind} gives no energy; write its method stored_energy(F) in "
+                    "J/m^3, or ask for the force and the displacement of what does the work"
                 )
             if one.kind == "torque" and self.dimension != "3d":
                 raise ValueError(f"asked.{name}: a torque about z is asked of a body in 3d only")
