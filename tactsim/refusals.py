@@ -28,6 +28,8 @@ _TYPES = {
 _BOUNDS = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most", "multiple_of": "a multiple of"}
 _PYDANTIC_TYPES = frozenset(get_args(ErrorType))
 _MISSING = object()
+OF_KEY = "[key]"
+"""What the validator appends to the location of a key that it refuses."""
 
 
 def refusals_of(error: ValidationError, value: Any, model: type[BaseModel]) -> dict[Path, str]:
@@ -91,6 +93,9 @@ def _is_member(key: str | int, rest: tuple[str | int, ...], value: dict[str, Any
 def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, Any]) -> tuple[Path, str]:
     """The key path to blame and the message for one refusal."""
     error_type, context = str(detail["type"]), detail.get("ctx", {})
+    if detail["loc"][-1:] == (OF_KEY,):
+        names = _schema_at(schema, root, path[:-1]).get("propertyNames", {})
+        return path, f"the key {as_written(path[-1])} is not allowed; expected {names.get('description', detail['msg'])}"
     value = value_at(root, path)
     fragment = _schema_at(schema, root, path)
     if error_type == "extra_forbidden":

@@ -9,7 +9,11 @@ from pydantic import Field, StringConstraints
 from tactsim.materials.invariant_polynomial import InvariantPolynomial, powers_of
 from tactsim.units import Pressure
 
-CoefficientName = Annotated[str, StringConstraints(pattern=r"^c([1-9][0-9]|0[1-9])$")]
+CoefficientName = Annotated[
+    str,
+    StringConstraints(pattern=r"^c([1-9][0-9]|0[1-9])$"),
+    Field(description="c and two digits, the powers of (I1 - 3) and of (I2 - 3), such as c10"),
+]
 
 
 class Polynomial(InvariantPolynomial):

@@ -46,7 +46,7 @@ class AskedDisplacement(Asked):
 class AskedStress(Asked):
     """A component of the Cauchy stress at a point, tension positive.
 
-    ``radial`` and ``hoop`` are taken about the z axis; ``mean`` is a third of the trace.
+    ``radial`` and ``hoop`` are taken about the z axis, at the deformed place of the point; ``mean`` is a third of the trace.
     """
 
     kind: Literal["stress"]
@@ -138,7 +138,10 @@ class AskedContactForce(Asked):
 
 
 class AskedEnergy(Asked):
-    """Stored energy of the part that is computed, without what relaxes."""
+    """Energy of the part that is computed as it would remain stored after any relaxation: without what fades.
+
+    The energy of the volume change is that of the pressure, p^2 / (2 K), as the mixed form has it.
+    """
 
     kind: Literal["energy"]
 

@@ -91,10 +91,14 @@ class Probes:
         if component in entries:
             row, column = entries[component]
             return lambda now: float(point.mean(now.stress)[row, column])
-        radius = float(np.hypot(one.at[0], one.at[1]))
-        away = np.array([one.at[0], one.at[1], 0.0]) / radius
-        along = away if component == "radial" else np.array([-away[1], away[0], 0.0])
-        return lambda now: float(along @ point.mean(now.stress) @ along)
+        return lambda now: self._around_axis(one, point, now)
+
+    def _around_axis(self, one: AskedStress, point: BodyPoint, now: Present) -> float:
+        """Cauchy stress in the direction from the z axis to the deformed place of the point, or around the axis there."""
+        x, y = (np.array(one.at) + point.displacement(now.timed.contact.unknowns))[:2]
+        away = np.array([x, y, 0.0]) / np.hypot(x, y)
+        along = away if one.component == "radial" else np.array([-away[1], away[0], 0.0])
+        return float(along @ point.mean(now.stress) @ along)
 
     def _torque(self, face: str, now: Present) -> float:
         u, _ = self._model.space.split(now.timed.contact.unknowns)
@@ -106,9 +110,15 @@ class Probes:
         return float(contact.surface.total(contact.state.traction)[axis])
 
     def _energy(self, now: Present) -> float:
-        F, weights = now.timed.contact.kinematics.F, self._model.body.points.weights
-        material = self._problem.material
-        return float((weights * material.stored_energy(F)).sum())  # type: ignore[attr-defined]
+        body, state, material = self._model.body, now.timed.contact, self._problem.material
+        isochoric = material.stored_energy(state.kinematics.F)  # type: ignore[attr-defined]
+        volumetric = np.zeros(isochoric.shape)
+        if material.bulk_modulus is not None:
+            # That of the pressure: J at single points misses what the pressure asks for by the error of the mesh.
+            isochoric = isochoric - material.bulk_modulus / 2 * material.volume_change(state.kinematics.F) ** 2
+            volumetric = body.pressure(state.unknowns) ** 2 / (2 * material.bulk_modulus)
+        lasting = 1.0 if material.relaxation is None else material.relaxation.amplitudes[0]
+        return float((body.points.weights * (lasting * isochoric + volumetric)).sum())
 
 
 def isochoric_of(variables: HistoryVariables | None) -> Array | None:

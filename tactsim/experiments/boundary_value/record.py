@@ -12,7 +12,7 @@ from tactsim.experiments.boundary_value.limit_load import LimitLoad
 from tactsim.experiments.boundary_value.posing import PosedProblem, posed
 from tactsim.experiments.boundary_value.probes import Probes
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
-from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
+from tactsim.experiments.boundary_value.setup import MOST_STEPS, BoundaryValueSetup
 from tactsim.fem.assembly.material_forms import interpreted_warnings
 from tactsim.fem.paths.time_steps import TimeControl
 from tactsim.interfaces.run import Course, Findings
@@ -27,13 +27,15 @@ from tactsim.mechanics.outcome.contact_record import (
 )
 from tactsim.mechanics.outcome.success import LARGEST_FORCE_ERROR
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState, TimeInterval, TimeStepPolicy, smooth_intervals
-from tactsim.mechanics.paths.step_policy import StepPolicy, shortest_relaxation_time
+from tactsim.mechanics.paths.step_policy import SMALLEST_LOAD_STEP, StepPolicy, shortest_relaxation_time
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Status, StepRecord
 from tactsim.units import format_quantity
 
 WIDER = 10.0
 """Factor of a penetration tolerance that is advised where the contact does not converge."""
+SHORTER = 100
+"""Factor of the number of steps that is advised where not even the first is found."""
 SAME_TIME = 1e-9
 """Relative difference of two times that is round-off."""
 
@@ -98,8 +100,21 @@ def _accepted(record: BoundaryValueRecord, path: TimedPath, limit: LimitLoad) ->
             limit.saw(state)
             yield record.accept(state)
     except ConvergenceError as error:
-        hints = limit.in_words() or record.wider_in_words()
+        hints = limit.in_words() or record.wider_in_words() or _shorter_in_words(record)
         raise ConvergenceError(f"{error}{hints}", error.history, error.solutions) from error
+
+
+def _shorter_in_words(record: BoundaryValueRecord) -> str:
+    """That more load steps begin with a shorter one, if not even the first was found; empty otherwise."""
+    problem, given = record.problem, record.problem.steps
+    more = min(SHORTER * given, MOST_STEPS)
+    if record.steps or more == given or problem.material.relaxation is not None or problem.begins_with_jump:
+        return ""
+    shortest = f"{1 / SMALLEST_LOAD_STEP:.0f} times as short"
+    return (
+        f"; not even a first step was found, nor one {shortest}: steps: {more} instead of {given} begins with shorter ones, as a "
+        "thin sheet needs that is limp while it is flat"
+    )
 
 
 def _time_reached(step: StepRecord) -> str:

@@ -28,7 +28,11 @@ from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
 
-AskedName = Annotated[str, StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,60}$")]
+AskedName = Annotated[
+    str,
+    StringConstraints(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,60}$"),
+    Field(description="a name: a letter and up to 60 further letters, digits or underscores"),
+]
 RECORDED = {
     "time": "s",
     "min_volume_ratio": "1",
@@ -38,6 +42,8 @@ RECORDED = {
     "max_penetration": "m",
 }
 """Units of what every step records beside what is asked for."""
+MOST_STEPS = 10_000
+"""Of a ramp, and of a period of a sine."""
 PENETRATION_SHARE, WITH_FRICTION = 1e-6, 1e-5
 """Largest penetration over the body's size, if a case gives none: of smooth contacts, and where any has friction."""
 
@@ -65,7 +71,7 @@ class BoundaryValueSetup(FrozenModel):
     0 to 1 within a second."""
     asked: Annotated[dict[AskedName, AnyAsked], Field(min_length=1)]
     """Name -> number that is asked for."""
-    steps: Annotated[int, Field(ge=1, le=10_000)] = 10
+    steps: Annotated[int, Field(ge=1, le=MOST_STEPS)] = 10
     """Least number of steps of a ramp, and per period of a sine."""
     time: TimeSettings = TimeSettings()
     """Steps of time of a material that relaxes."""
@@ -77,6 +83,12 @@ class BoundaryValueSetup(FrozenModel):
         """Time in s until the last amplitude ends."""
         given = [one.amplitude for one in (*self.conditions, *self.contacts) if one.amplitude is not None]
         return max(amplitude.duration for amplitude in (self.amplitude, *given))
+
+    @property
+    def begins_with_jump(self) -> bool:
+        """Whether anything acts at once."""
+        amplitudes = (one.amplitude or self.amplitude for one in (*self.conditions, *self.contacts))
+        return any(amplitude.history().segments[0].at(0.0) != 0 for amplitude in amplitudes)
 
     def largest_penetration(self, size: float) -> float:
         """Largest penetration in m that is allowed, of a body of this size in m."""
@@ -103,6 +115,11 @@ class BoundaryValueSetup(FrozenModel):
             component = getattr(one, "component", None)
             if component in ("x", "y", "z", "r") and component not in axes:
                 raise ValueError(f"asked.{name}: there is no component {component}; allowed: {', '.join(axes)}")
+            if one.kind == "energy" and not hasattr(self.material, "stored_energy"):
+                raise ValueError(
+                    f"asked.{name}: the material {self.material.kind} gives no energy; write its method stored_energy(F) in "
+                    "J/m^3, or ask for the force and the displacement of what does the work"
+                )
             if one.kind == "torque" and self.dimension != "3d":
                 raise ValueError(f"asked.{name}: a torque about z is asked of a body in 3d only")
             if one.kind == "contact_force" and one.contact > len(self.contacts):
@@ -161,8 +178,7 @@ class BoundaryValueSetup(FrozenModel):
         if time > self.duration * (1 + 1e-9):
             given, end = format_quantity(time, "s"), format_quantity(self.duration, "s")
             raise ValueError(f"asked.{name}: the time {given} lies after the end at {end}")
-        given_amplitudes = (one.amplitude or self.amplitude for one in (*self.conditions, *self.contacts))
-        if time == 0 and all(amplitude.history().segments[0].at(0.0) == 0 for amplitude in given_amplitudes):
+        if time == 0 and not self.begins_with_jump:
             raise ValueError(f"asked.{name}: nothing acts at the time 0, for no amplitude begins with a jump; take a later time")
 
     def _check_contact(self, condition: ContactCondition, axes: tuple[str, ...]) -> None:

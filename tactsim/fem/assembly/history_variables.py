@@ -33,6 +33,8 @@ MEAN_OF_CUBIC = 0.25
 """Bound of the mean error of the parabola, over the slope of the error at its end times the step."""
 LARGEST_GROWTH = 2.4
 """Ratio of two steps beyond which no parabola is fitted: 1 + sqrt 2 is the limit of stability of such formulas."""
+ALL_BUT_GONE = 0.01
+"""Part of the lasting stress below which the whole stress is no measure of an error."""
 MOST_EARLIER = 3
 """States that the error of a step needs."""
 COMPONENTS = (np.array([0, 1, 2, 0, 1, 0]), np.array([0, 1, 2, 1, 2, 2]))
@@ -171,7 +173,8 @@ def step_error(body: Body, variables: HistoryVariables, least: float = 0.0) -> f
     The error of the parabola is :math:`s (s - \Delta t)(s + \Delta t_0) \dddot S / 6` in the elastic stress. A short relaxation
     time responds to its slope at the end of a step, a long one to its mean, which fading memory keeps from accumulating. For the
     second step of a piece the whole curvature counts as the error. Differences within the round-off of F = 1 + ... do not count.
-    A stress below ``least`` in Pa counts as large as that.
+    A stress below ``least`` in Pa counts as large as that, and one that is all but gone as a hundredth of its part that does not
+    relax: in a body that was unloaded the parts cancel, and nothing would be exact enough beside their sum.
     """
     if len(variables.earlier) < 2:
         return 0.0
@@ -189,7 +192,8 @@ def step_error(body: Body, variables: HistoryVariables, least: float = 0.0) -> f
     moduli = np.array([material.shear_modulus for material in body.materials])[body.regions]
     noise = NOISE_GROWTH * ROUND_OFF * max(last / length for _, length in variables.earlier) ** 2 * moduli[:, None]
     missed = np.where(np.abs(missed) > noise, missed, 0.0)
-    size = max(size_of(body, variables.stress), least)
+    lasting = size_of(body, variables.series.equilibrium[:, None] * variables.elastic)
+    size = max(size_of(body, variables.stress), ALL_BUT_GONE * lasting, least)
     total = (variables.series.amplitudes * weight).sum(axis=0)
     return size_of(body, total[:, None] * missed) / size if size > 0 else 0.0
 

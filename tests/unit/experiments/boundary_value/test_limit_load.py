@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from small_problems import RUBBER, SQUARE, asked
+from small_problems import RUBBER, SIDE, SQUARE, asked
 
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.fem.assembly.body import Body
@@ -76,3 +76,27 @@ def test_what_fails_for_another_reason_is_at_no_limit_load():
     result = BoundaryValueProblem.model_validate({**fields, "conditions": [*pressed, crushed]}).run()
     assert result.status is Status.FAILED
     assert "limit load" not in result.reason
+
+
+def test_a_sheet_that_is_limp_while_flat_is_helped_to_shorter_steps():
+    sheet = {
+        "kind": "cylinder",
+        "radial": [{"length": SIDE, "cells": 12, "ratio": 0.3}],
+        "axial": [{"length": SIDE / 800, "cells": 1}],
+    }
+
+    def blown_up(steps):
+        return BoundaryValueProblem(
+            dimension="axisymmetric",
+            geometry=sheet,
+            material=RUBBER,
+            conditions=[{"kind": "clamped", "face": "outer"}, {"kind": "pressure", "face": "bottom", "pressure": 1.6}],
+            asked=asked("displacement", at=(0.0, SIDE / 800), component="z"),
+            steps=steps,
+        ).run()
+
+    refused = blown_up(2)
+    assert refused.status is Status.FAILED
+    assert "gave up at 0 s" in refused.reason
+    assert "steps: 200 instead of 2 begins with shorter ones" in refused.reason
+    assert blown_up(200).status is Status.CONVERGED

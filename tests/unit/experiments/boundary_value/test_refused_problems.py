@@ -49,6 +49,16 @@ HALF = {"x": [0.0, SIDE / 2]}
             "lies outside the body, where x",
         ),
         ({"asked": asked("force", face="roof", component="x")}, "asked.number.face", "no face 'roof'"),
+        (
+            {"asked": {"2nd-force": {"kind": "volume"}}},
+            "asked.2nd-force",
+            "the key '2nd-force' is not allowed; expected a name: a letter and up to 60 further letters",
+        ),
+        (
+            {"material": {"kind": "polynomial", "coefficients": {"c3": 1e3}}},
+            "material.coefficients.c3",
+            "the key 'c3' is not allowed; expected c and two digits",
+        ),
         ({"dimension": "axisymmetric", "asked": asked("volume")}, "geometry", "a block has no axis"),
         ({"contacts": [{"face": "roof", "side": "top", "body": {"kind": "plane"}}]}, "contacts.0.face", "no face 'roof'"),
         (
