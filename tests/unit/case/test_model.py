@@ -51,7 +51,7 @@ def test_the_resolved_case_is_plain_json_in_si(case_file: Path) -> None:
     assert resolved["experiment"]["specimen"]["layers"][1]["material"] == {"kind": "stiff", "c10": 1e4, "exponent": 2}
 
 
-def test_a_case_made_in_python_keeps_the_fields_of_its_experiment() -> None:
+def test_a_case_made_in_python_keeps_the_fields_of_its_experiment(pretended: None) -> None:
     case = Case(schema=SCHEMA, experiment=Pretence.example())
     assert case.resolved()["experiment"]["specimen"]["layers"][0]["material"]["modulus"] == 3e3
 
@@ -77,11 +77,11 @@ def test_a_mapping_for_the_experiment_is_refused_as_in_a_file(experiment: object
     assert "TypeError" not in sentences[1][0]
 
 
-def test_a_mapping_for_the_experiment_is_taken() -> None:
+def test_a_mapping_for_the_experiment_is_taken(pretended: None) -> None:
     experiment = Pretence.example()
     assert Case(schema=SCHEMA, experiment=experiment.model_dump()) == Case(schema=SCHEMA, experiment=experiment)
 
 
-def test_the_signature_names_the_keys_of_a_file() -> None:
+def test_the_signature_names_the_keys_of_a_file(pretended: None) -> None:
     assert "schema" in inspect.signature(Case).parameters
     assert Case(SCHEMA, "A title", Pretence.example()).title == "A title"
