@@ -9,6 +9,7 @@ from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
 
 from tactsim.errors import Refused
 from tactsim.refusals import refusals_of
@@ -20,13 +21,18 @@ else:
     ModelMetaclass = type(BaseModel)
 
 
+def _by_key(model: type[BaseModel]) -> dict[str, FieldInfo]:
+    """The fields that a caller may give, by the keys that they have in a file; the kind is that of the class."""
+    return {field.alias or name: field for name, field in model.model_fields.items() if name != "kind"}
+
+
 class _Fields:
     """The signature of a model as ``help`` shows it: its fields and their types without the machinery of pydantic."""
 
     def __get__(self, instance: object, model: type[BaseModel]) -> inspect.Signature:
         if instance is not None:
             raise AttributeError("__signature__")
-        fields = {name: field for name, field in model.model_fields.items() if name != "kind"}
+        fields = _by_key(model)
         typed = SimpleNamespace(__annotations__={name: field.annotation for name, field in fields.items()})
         types = get_type_hints(typed)  # of which it leaves the annotations out, within others too
         empty = inspect.Parameter.empty
@@ -51,7 +57,7 @@ class _MadeInPython(ModelMetaclass):
         cls.__signature__ = _Fields()
 
     def __call__(cls, *values: Any, **fields: Any) -> Any:
-        named = dict(zip((name for name in cls.model_fields if name != "kind"), values, strict=False))  # type: ignore[attr-defined]
+        named = dict(zip(_by_key(cls), values, strict=False))  # type: ignore[arg-type]
         if len(named) < len(values):
             raise TypeError(f"{cls.__name__} takes at most {len(named)} values by position, {len(values)} were given")
         if twice := named.keys() & fields.keys():

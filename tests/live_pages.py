@@ -54,8 +54,8 @@ def taxel_forces(steps: int = 4, count: int = 3, *, lump: float = 0.5, place: tu
     return np.linspace(1 / steps, 1, steps)[:, None, None, None] * last
 
 
-def made_up_grasp(forces: np.ndarray | None = None, *, lump: bool = True, title: str = TITLE) -> Result:
-    """The result of a grasp with these forces (step, jaw, row, column) in N, closed by 1 mm in 1 s."""
+def made_up_grasp(forces: np.ndarray | None = None, *, lump: bool = True, title: str = TITLE, **jaws: float) -> Result:
+    """The result of a grasp with these forces (step, jaw, row, column) in N, closed by 1 mm in 1 s, with fields of ``jaws``."""
     given = taxel_forces() if forces is None else forces
     steps, count = len(given), given.shape[-1]
     layout = TaxelLayout(rows=count, columns=count, pitch=30e-3 / count, size=27e-3 / count)
@@ -77,7 +77,7 @@ def made_up_grasp(forces: np.ndarray | None = None, *, lump: bool = True, title:
         steps=(StepRecord(1, 1, 0.0, {"displacement": CLOSING}),),
         units={"displacement": "m"},
         title=title,
-        scene=grasp_scene(SIZE, layout, [ball] if lump else [], closing=CLOSING),
+        scene=grasp_scene(SIZE, layout, [ball] if lump else [], closing=CLOSING, **jaws),
     )
 
 

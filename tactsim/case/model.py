@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import cache
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, SerializeAsAny, create_model
+from pydantic import Field, create_model
 
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Progress
@@ -44,7 +44,7 @@ class Case(FrozenModel):
     """Version of the case format."""
     title: str = Field(default="", max_length=200)
     """One line that says what the case is."""
-    experiment: SerializeAsAny[Experiment]
+    experiment: Annotated[Experiment, Registered(Experiment)]
     """What to compute."""
     output: Output = Output()
     """What to write."""

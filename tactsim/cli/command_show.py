@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from tactsim.cli import console
-from tactsim.errors import InputError
+from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -96,12 +96,22 @@ def run(arguments: argparse.Namespace) -> int:
 
 
 def _case_of(named: Path) -> Path | None:
-    """The case file that an argument names, itself or as a shipped case; None if it names something else."""
-    from tactsim.shipped import CASES, case_path
+    """The case file that an argument names, itself or as a shipped case; None if it names a folder.
+
+    Raises
+    ------
+    StorageError
+        If it is a bare name of neither.
+    """
+    from tactsim.shipped import case_path
 
     if named.suffix in CASE_ENDINGS and not named.is_dir():
         return named
-    return case_path(named) if not named.exists() and (CASES / f"{named}.yaml").is_file() else None
+    try:
+        case = case_path(named)
+    except UnknownName as error:
+        raise StorageError(f"there is no folder {one_line(named)} here; {error}") from None
+    return None if case == named else case
 
 
 def _show_case(path: Path, save: Path | None) -> int:

@@ -25,4 +25,4 @@ def missing_extra(error: ImportError) -> InputError | None:
     if package not in EXTRAS:
         return None
     what, extra = EXTRAS[package]
-    return InputError(f"{what} needs the package {package}, which is not installed: pip install 'tactsim[{extra}]'")
+    return InputError(f"the package {package}, needed for {what}, is not installed: pip install 'tactsim[{extra}]'")

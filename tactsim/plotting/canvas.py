@@ -176,7 +176,7 @@ class SingleFigure(ResultFigures):
 
 def scale_of(largest: float, unit: str) -> tuple[float, str]:
     """Factor and prefixed unit in which a size in SI reads well, like ``(1e3, "mm")``."""
-    for exponent, prefix in ((6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ")):
+    for exponent, prefix in ((6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n")):
         if largest >= 10.0**exponent:
             return 10.0**-exponent, f"{prefix}{unit}"
     return 1.0, unit

@@ -316,18 +316,20 @@ def test_a_map_without_a_reference_at_its_closing_is_unknown_and_not_zero(browse
         assert label == "top view: unknown, see the estimate"
 
 
-def test_the_labels_in_space_stay_whole_on_a_telephone(browser: webdriver.Chrome, tmp_path: Path) -> None:
-    size = {"width": 390, "height": 800, "deviceScaleFactor": 1, "mobile": False}
+@pytest.mark.parametrize(("width", "height", "jaw"), [(390, 800, 0.05), (1024, 640, 0.02)])
+def test_the_labels_in_space_stay_whole(browser: webdriver.Chrome, tmp_path: Path, width: int, height: int, jaw: float) -> None:
+    """On a telephone, and of a block that is twice as wide as the jaws."""
+    size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:
-        with served(opened_content(grasp_folder(tmp_path / "a"))) as address:
+        with served(opened_content(grasp_folder(tmp_path / "a", width=jaw, depth=jaw))) as address:
             browser.get(address)
             until(lambda: camera(browser) and "Off by" in words(browser, "estimate"))
             sides = """
             const within = document.getElementById('space-labels').getBoundingClientRect();
             return [...document.querySelectorAll('#space-labels span')].map((one) => {
-              const { left, right } = one.getBoundingClientRect();
-              return Math.min(left - within.left, within.right - right);
+              const { left, right, top, bottom } = one.getBoundingClientRect();
+              return Math.min(left - within.left, within.right - right, top - within.top, within.bottom - bottom);
             });"""
             rooms = browser.execute_script(sides)
             assert len(rooms) == 4

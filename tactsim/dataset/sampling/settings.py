@@ -52,7 +52,10 @@ class Splits(FrozenModel):
     @model_validator(mode="after")
     def _possible(self) -> Self:
         if self.train + self.validation > 1:
-            raise ValueError(f"train {self.train:g} and validation {self.validation:g} add up to more than 1")
+            default = "" if "validation" in self.model_fields_set else " (if not given)"
+            raise ValueError(
+                f"train {self.train:g} and validation {self.validation:g}{default} add up to more than 1; the rest is test"
+            )
         for name in self.out_of_distribution:
             if name in ("train", "validation", "test", NO_SPLIT) or not name.isidentifier():
                 raise ValueError(f"out_of_distribution.{name}: a split needs a name of letters, digits and _ that is not taken")

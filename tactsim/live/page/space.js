@@ -67,13 +67,14 @@ export class Space {
     }));
   }
 
-  // On a narrow screen the labels at the sides stay whole.
+  // The labels stay whole: on a narrow screen those at the sides, and those below jaws that are narrower than the block.
   #placeLabels() {
-    const room = this.labels.clientWidth;
+    const { clientWidth: wide, clientHeight: high } = this.labels;
+    const within = (at, half, room) => `${Math.max(half, Math.min(room - half, (room / 2) * (at + 1))).toFixed(1)}px`;
     for (const { at, place } of this.marks) {
-      const seen = at.clone().project(this.camera), half = place.offsetWidth / 2;
-      place.style.left = `${Math.max(half, Math.min(room - half, (room / 2) * (seen.x + 1))).toFixed(1)}px`;
-      place.style.top = `${(50 * (1 - seen.y)).toFixed(2)}%`;
+      const seen = at.clone().project(this.camera);
+      place.style.left = within(seen.x, place.offsetWidth / 2, wide);
+      place.style.top = within(-seen.y, place.offsetHeight / 2, high);
     }
   }
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 from pathlib import Path
 
@@ -9,6 +10,7 @@ import pytest
 from pretence import CASE_TEXT, Pretence
 
 from tactsim.case import SCHEMA, Case, load_case
+from tactsim.errors import CaseError
 
 
 def identity(path: Path, text: str) -> str:
@@ -49,6 +51,37 @@ def test_the_resolved_case_is_plain_json_in_si(case_file: Path) -> None:
     assert resolved["experiment"]["specimen"]["layers"][1]["material"] == {"kind": "stiff", "c10": 1e4, "exponent": 2}
 
 
-def test_a_case_made_in_python_keeps_the_fields_of_its_experiment() -> None:
+def test_a_case_made_in_python_keeps_the_fields_of_its_experiment(pretended: None) -> None:
     case = Case(schema=SCHEMA, experiment=Pretence.example())
     assert case.resolved()["experiment"]["specimen"]["layers"][0]["material"]["modulus"] == 3e3
+
+
+@pytest.mark.parametrize(
+    "experiment",
+    [
+        3,
+        {},
+        {"kind": "graps"},
+        {"kind": "closed_form", "outer_radius": "4 kPa"},
+        {"kind": "film_test", "thickness": "1 mm"},
+    ],
+)
+def test_a_mapping_for_the_experiment_is_refused_as_in_a_file(experiment: object) -> None:
+    with pytest.raises(CaseError) as of_file:
+        load_case({"schema": SCHEMA, "experiment": experiment})
+    with pytest.raises(CaseError) as of_python:
+        Case(schema=SCHEMA, experiment=experiment)
+    sentences = [[line.partition(": ")[2] for line in str(error.value).splitlines()] for error in (of_file, of_python)]
+    if isinstance(experiment, dict):
+        assert sentences[0] == sentences[1]
+    assert "TypeError" not in sentences[1][0]
+
+
+def test_a_mapping_for_the_experiment_is_taken(pretended: None) -> None:
+    experiment = Pretence.example()
+    assert Case(schema=SCHEMA, experiment=experiment.model_dump()) == Case(schema=SCHEMA, experiment=experiment)
+
+
+def test_the_signature_names_the_keys_of_a_file(pretended: None) -> None:
+    assert "schema" in inspect.signature(Case).parameters
+    assert Case(SCHEMA, "A title", Pretence.example()).title == "A title"

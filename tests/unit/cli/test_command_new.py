@@ -84,6 +84,46 @@ def test_the_completion_knows_every_command(shell: str, capsys: pytest.CaptureFi
         assert subprocess.run(["bash", "-n"], input=script, text=True, check=False).returncode == 0
 
 
+@pytest.mark.parametrize(
+    ("typed", "completed"),
+    [
+        ("run my_c", {"my_case.yaml"}),
+        ("run annulus_icf my_c", {"my_case.yaml"}),
+        ("run annulus_conv", {"annulus_convex"}),
+        ("show annulus_conv", {"annulus_convex"}),
+        ("sweep sweep_lu", {"sweep_lumps"}),
+        ("new grasp my_c", {"my_case.yaml"}),
+        ("material my_c", {"my_case.yaml"}),
+        ("validate table_3_3", {"table_3_3", "table_3_3_simulated"}),
+        ("run my_case.yaml --out fo", {"folder"}),
+        ("show folder --web --reference fo", {"folder"}),
+        ("data rank fo", {"folder"}),
+        ("data rank folder --reference fo", {"folder"}),
+        ("run annulus_icf --figures sv", {"svg"}),
+    ],
+)
+def test_the_completion_in_bash_offers_names_and_files(
+    typed: str, completed: set[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "my_case.yaml").touch()
+    (tmp_path / "folder").mkdir()
+    assert main(["completion", "bash"]) == 0
+    script = capsys.readouterr().out
+    words = ["tactsim", *typed.split()]
+    press_tab = f"COMP_WORDS=({' '.join(words)}); COMP_CWORD={len(words) - 1}; _shtab_tactsim 2>/dev/null"
+    ask = ["bash", "--norc", "-c", f'{script}\n{press_tab}; printf "%s\\n" "${{COMPREPLY[@]}}"']
+    offered = subprocess.run(ask, cwd=tmp_path, capture_output=True, text=True, check=False).stdout
+    assert set(offered.split()) == completed
+
+
+@pytest.mark.parametrize(("shell", "files"), [("zsh", "files:file:_files"), ("fish", "__fish_complete_path")])
+def test_the_completion_of_the_other_shells_names_the_same(shell: str, files: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["completion", shell]) == 0
+    lines = [line for line in capsys.readouterr().out.splitlines() if "annulus_convex" in line]
+    assert lines
+    assert all(files in line for line in lines)
+
+
 def test_without_a_command_the_help_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
     assert main([]) == 2
     shown = capsys.readouterr()

@@ -91,3 +91,10 @@ def test_the_help_gives_the_noise_that_the_page_takes() -> None:
     assert f"{100 * MESH_SHARE:g} %% of the largest force" in " ".join(NOISE_WORDS.split())
     assert f"{1e3 * ROUNDING_NOISE:.3f} mN" in NOISE_WORDS
     assert f"a resolution of {RESOLUTION:g} N" in NOISE_WORDS
+
+
+def test_a_misspelt_case_is_answered_with_the_nearest(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "annulus_ifc"]) == 5
+    shown = capsys.readouterr().err
+    assert "there is no folder annulus_ifc here" in shown
+    assert "did you mean 'annulus_icf'?" in shown

@@ -147,6 +147,7 @@ def test_splits_follow_specimens_and_rules(tmp_path: Path) -> None:
         ("instantaneous_shear_modulus: {below", "shear_modulus: {below", r"sweep.yaml:\d+: sweep.splits.out_of_distribution"),
         ("kind: closed_form", "kind: closd_form", r"sweep.yaml:4: experiment.kind: .*did you mean 'closed_form'"),
         ("train: 0.5", "train: 0.9", "add up to more than 1"),
+        ("train: 0.5\n    validation: 0.25", "train: 1", r"train 1 and validation 0.1 \(if not given\) add up to more than 1"),
         ("seed: 7", "design: grid", "a grid takes lists"),
     ],
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import fill
 from typing import Any, Literal
 
 import numpy as np
@@ -21,6 +22,8 @@ from tactsim.plotting.canvas import Plot, despined, result_figure
 from tactsim.results import Result
 
 DATA, LINE = "#1f4e79", "#b8540a"
+LINE_LENGTH = 140
+"""Letters of the line below the panels."""
 MOST_CURVES = 6
 """Forces whose creep is drawn."""
 SURFACE_TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
@@ -59,7 +62,7 @@ def film_test_figure(result: Result, coefficients: Mapping[str, Sequence[float]]
         for axis in axes.flat:
             despined(axis)
         if result.assumptions:  # which line the film was identified to, and over what, which is not the line of these readings
-            figure.supxlabel(result.assumptions[0], x=0.01, ha="left", fontsize=8.5)
+            figure.supxlabel(fill(result.assumptions[0], LINE_LENGTH), x=0.01, ha="left", fontsize=8.5)
     return figure
 
 
@@ -89,7 +92,7 @@ def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:
     when = f"{result.scene_as(FilmTestScene).reading_time:g} s after the force began"
     resistance.semilogy(forces, read / 1e3, "o-", color=DATA, markersize=3, label="film and contacts")
     resistance.semilogy(forces, result.quantities["reading_film_resistance"].numbers / 1e3, "--", color=LINE, label="film alone")
-    resistance.legend(loc="upper right")
+    resistance.legend()
     resistance.set(xlabel="force in N", ylabel="resistance in kΩ")
     resistance.set_title(f"resistance, {when}", loc="left")
     conductance.plot(forces, 1e3 / read, "o", color=DATA, markersize=3)

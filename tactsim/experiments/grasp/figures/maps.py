@@ -24,8 +24,10 @@ from tactsim.results import Result
 
 MOST_NAMED = 5
 """Matrices with more rows or columns than this have the first and the last one named."""
-MOST_WRITTEN = 100
-"""Matrices with more taxels than this show colours only, without borders, which would cover them."""
+MOST_BORDERED = 100
+"""Matrices with more taxels than this have no borders, which would cover the colours."""
+FITTING, LARGEST, SMALLEST = 30.0, 9.0, 3.0
+"""Points of the letters with which a pressure fills a taxel as wide as a map, of the largest, and of the smallest written."""
 ROUND_OFF = 1e-9
 """Relative distance from the upper face of a node that lies on it."""
 BESIDE = 0.6
@@ -47,7 +49,8 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
     bar = axes[0].figure.colorbar(
         ScalarMappable(scale.norm, PRESSURE_COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
     )
-    small = "; beneath it the force" if grasp.pressures["upper"].size <= MOST_WRITTEN else ""
+    written = [side for side in JAWS if _letters(grasp.scene, side) >= SMALLEST]
+    small = "; beneath it the force" if written else ""
     dashed = "undeformed block" + (" and outline of the inclusions" if bodies else "")
     bar.set_label(
         f"mean pressure on the taxel in {scale.unit}, one scale for both jaws{small}\nboth seen from above; dashed: {dashed}"
@@ -81,14 +84,14 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
     layout, place = grasp.scene.matrix, grasp.scene.place(side)
     columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
     colours, size = matplotlib.colormaps[PRESSURE_COLOURS], 1e3 * layout.size
-    large = float(np.clip(22 / max(layout.rows, layout.columns), 3.0, 9.0))
-    border = 0.6 if grasp.pressures[side].size <= MOST_WRITTEN else 0.0
+    large = _letters(grasp.scene, side)
+    border = 0.6 if grasp.pressures[side].size <= MOST_BORDERED else 0.0
     squares: list[Rectangle] = []
     for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
         corner = (columns[column, 0], rows[row, 0])
         shade = float(scale.norm(scale.factor * pressure))
         squares.append(Rectangle(corner, size, size, facecolor=colours(shade), edgecolor="#30363d", linewidth=border))
-        if grasp.pressures[side].size > MOST_WRITTEN:
+        if large < SMALLEST:
             continue
         style: dict[str, Any] = {
             "ha": "center",
@@ -108,6 +111,12 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
         axis.text(right, rows[number - 1].mean(), f"row {number}", ha="left", va="center", **named)
     for number in _named(layout.columns):
         axis.text(columns[number - 1].mean(), back, f"col. {number}", ha="center", va="bottom", **named)
+
+
+def _letters(scene: GraspScene, side: str) -> float:
+    """Size in points of the letters with which a pressure and its unit fit into a taxel."""
+    low, high = _extent(scene, side)
+    return min(FITTING * 1e3 * scene.matrix.size / float(np.max(high - low)), LARGEST)
 
 
 def _named(count: int) -> list[int]:

@@ -189,6 +189,25 @@ def test_maps_put_row_1_in_front_and_column_1_at_the_smallest_x():
     assert tuple(squares[0].get_facecolor()[0]) != tuple(squares[1].get_facecolor()[0])
 
 
+@pytest.mark.parametrize("layout", [TaxelLayout(), TaxelLayout(rows=4, columns=4, pitch=9e-3, size=8e-3)])
+@pytest.mark.parametrize("status", [Status.CONVERGED, Status.FAILED])
+def test_pressures_do_not_run_into_one_another(layout, status):
+    figure = maps_figure(made_up(layout=layout, status=status))
+    figure.draw_without_rendering()
+    for axis in figure.axes[:2]:
+        taxel = np.ptp(axis.transData.transform([(0, 0), (1e3 * layout.size, 0)])[:, 0])
+        written = [text.get_window_extent().width for text in axis.texts if text.get_text().endswith(" kPa")]
+        assert len(written) == layout.rows * layout.columns
+        assert max(written) <= taxel
+
+
+def test_pressures_that_would_not_be_legible_are_left_to_the_colours():
+    words = text_of(maps_figure(made_up(layout=TaxelLayout(rows=8, columns=8, pitch=2.5e-3, size=2.3e-3))))
+    assert "kPa" in words
+    assert "beneath it the force" not in words
+    assert not re.search(r"\d kPa", words)
+
+
 def test_large_matrix_shows_colours_only():
     words = text_of(maps_figure(made_up(layout=TaxelLayout(rows=12, columns=12, pitch=2.5e-3, size=2e-3))))
     assert "N on the taxels" in words
