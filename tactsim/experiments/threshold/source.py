@@ -39,7 +39,7 @@ class ClosedFormTissue:
 
     def approach(self, speed: float) -> Approach:
         """The forces over time at a speed in m/s."""
-        rise = self._annulus.rise_factor
+        rise = self._annulus.touch_factor
         touch = self.shape.recess / rise / speed
         duration = touch + self._beyond / speed
         down, inward = (History((Segment(0.0, duration, 0.0, rate),)) for rate in (speed, rise * speed))
