@@ -86,8 +86,11 @@ class AnnulusDesign(Experiment):
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         check_increasing(ratios=self.ratios, recesses=self.recesses, forces=self.forces, times=self.times)
-        if self.forces[-1] > self.largest_force or self.recommended_force > self.largest_force:
-            raise ValueError(f"a force is beyond the largest one of {format_quantity(self.largest_force, 'N')}")
+        given = {"forces": self.forces[-1], "recommended_force": self.recommended_force, "design_point.force": self.design_point.force}
+        for name, force in given.items():
+            if force > self.largest_force:
+                beyond, most = format_quantity(force, "N"), format_quantity(self.largest_force, "N")
+                raise ValueError(f"{name}: {beyond} is beyond the largest one of {most}; lower it or raise largest_force")
         if self.thickness is not None and self.formula != "exact":
             raise ValueError(f"the formula {self.formula!r} is for a half-space; on a layer take 'exact'")
         return self

@@ -157,8 +157,9 @@ def test_an_interrupted_run_keeps_its_rows():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"ratios": (0.5, 0.1)}, "ratios must increase"),
-        ({"forces": (1.0, 3.5)}, "beyond the largest one of 3 N"),
+        ({"ratios": (0.5, 0.1)}, "ratios must increase: entry 2 is not above entry 1"),
+        ({"forces": (1.0, 3.5)}, "forces: 3.5 N is beyond the largest one of 3 N"),
+        ({"design_point": {"force": 1000.0}}, "design_point.force: 1 kN is beyond the largest one of 3 N"),
         ({"recommended_force": 4.0}, "beyond the largest one"),
         ({"thickness": 4e-3, "formula": "thesis_4_2_21"}, "for a half-space"),
         ({"ratios": (0.0, 0.5)}, "greater than 0"),
