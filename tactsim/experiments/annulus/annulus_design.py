@@ -86,7 +86,11 @@ class AnnulusDesign(Experiment):
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         check_increasing(ratios=self.ratios, recesses=self.recesses, forces=self.forces, times=self.times)
-        given = {"forces": self.forces[-1], "recommended_force": self.recommended_force, "design_point.force": self.design_point.force}
+        given = {
+            "forces": self.forces[-1],
+            "recommended_force": self.recommended_force,
+            "design_point.force": self.design_point.force,
+        }
         for name, force in given.items():
             if force > self.largest_force:
                 beyond, most = format_quantity(force, "N"), format_quantity(self.largest_force, "N")

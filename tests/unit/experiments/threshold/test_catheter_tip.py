@@ -75,7 +75,9 @@ def test_a_tip_on_one_tissue_and_wrong_units_are_reported():
     far = run(place=("11 m", "0 mm"))
     assert any("every sensor stands on the atrium" in warning for warning in far.warnings)
     assert not any("every sensor stands" in warning or "unit" in warning for warning in run().warnings)
-    tissues = [{"name": name, "shear_modulus": modulus, "thickness": "3 mm"} for name, modulus in (("a", "20 GPa"), ("b", "20 kPa"))]
+    tissues = [
+        {"name": name, "shear_modulus": modulus, "thickness": "3 mm"} for name, modulus in (("a", "20 GPa"), ("b", "20 kPa"))
+    ]
     hard = run(surface={"tissues": tissues, "borders": ["13 mm"]})
     assert any("tissue a has a shear modulus of 20 GPa" in warning for warning in hard.warnings)
 
