@@ -95,5 +95,6 @@ def check_increasing(**lists: Sequence[float]) -> None:
         Naming the first that does not.
     """
     for name, values in lists.items():
-        if any(later <= earlier for earlier, later in itertools.pairwise(values)):
-            raise ValueError(f"{name} must increase")
+        for place, (earlier, later) in enumerate(itertools.pairwise(values), 1):
+            if later <= earlier:
+                raise ValueError(f"{name} must increase: entry {place + 1} is not above entry {place}")

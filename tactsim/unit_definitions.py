@@ -1,13 +1,14 @@
 """The units that a quantity may have, as definitions for pint: those of SI, and those that laboratories and medicine print.
 
-Any other unit that pint knows, from the furlong to the parsec, is a slip. With these alone a process is ready to read
-quantities in a tenth of the time that all of pint's units take.
+An angle has a dimension of its own, so that rad/s is no frequency in Hz. Any other unit that pint knows, from the furlong to the
+parsec, is a slip. With these alone a process is ready to read quantities in a tenth of the time that all of pint's units take.
 """
 
 from __future__ import annotations
 
 from functools import cache
 
+FEW_UNITS = "m, mm, inch, g, s, min, h, N, kgf, dyn, Pa, kPa, bar, mmHg, cmH2O, psi, V, A, ohm, S, F, J, eV, Hz, deg, rad, %"
 PREFIXES = (
     "quecto- = 1e-30 = q-",
     "ronto- = 1e-27 = r-",
@@ -43,7 +44,7 @@ PREFIXED = (
     "gram = [mass] = g",
     "mole = [substance] = mol",
     "kelvin = [temperature]; offset: 0 = K = degK = °K = degree_Kelvin = degreeK",
-    "radian = [] = rad",
+    "radian = [angle] = rad",
     "liter = 1e-3 * meter ** 3 = l = L = ℓ = litre",
     "hertz = 1 / second = Hz",
     "newton = kilogram * meter / second ** 2 = N",

@@ -24,7 +24,7 @@ from pydantic import (
 )
 
 from tactsim.errors import InvalidQuantity, shown
-from tactsim.unit_definitions import DIMENSIONS, PREFIXED, PREFIXES, RARE_PREFIXES, UNPREFIXED, customary_words
+from tactsim.unit_definitions import DIMENSIONS, FEW_UNITS, PREFIXED, PREFIXES, RARE_PREFIXES, UNPREFIXED, customary_words
 
 _QUANTITY = re.compile(
     r"(?P<number>[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?))(?:\s*(?P<unit>[^\s\d.].*|1\s*/.*))?",
@@ -35,9 +35,7 @@ _WORD = r"[cm]?mH2O|[^\W\d_]+(?:_[^\W\d_]+)*"
 _FACTOR = rf"(?:{_WORD})(?:(?:\*\*|\^)-?\d)?|[%°]"
 _UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:{_FACTOR})|\s+(?:{_FACTOR}))*")
 
-
 DECIMAL_POINT = "decimals begin with a point, not a comma"
-FEW_UNITS = "m, mm, inch, g, s, min, h, N, kgf, dyn, Pa, kPa, bar, mmHg, cmH2O, psi, V, A, ohm, S, F, J, eV, Hz, deg, rad, %"
 
 
 @cache
@@ -103,6 +101,11 @@ def parse_quantity(text: str, unit: str) -> float:
     def expected() -> str:
         return f"expected {_asked(unit)}"
 
+    def unknown() -> InvalidQuantity:
+        powers = re.sub(r"(?<=[^\W\d_])(?=\d)", "^", given_unit)
+        hint = f" (is it {powers!r}?)" if powers != given_unit and is_unit(powers) else ""
+        return InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}{hint}; {expected()}")
+
     parts = _QUANTITY.fullmatch(text.strip())
     if parts is None or (parts["unit"] or "").startswith(","):
         point = DECIMAL_POINT if re.match(r"\s*[-+]?\d*,\d", text) else expected()
@@ -113,7 +116,7 @@ def parse_quantity(text: str, unit: str) -> float:
     if not given_unit:
         raise InvalidQuantity(f"{shown(text)} has no unit; {expected()}")
     if not _UNIT.fullmatch(given_unit):
-        raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected()}")
+        raise unknown()
     if unusual := _unusual_unit(given_unit):
         raise InvalidQuantity(
             f"{shown(text)} is in {shown(unusual)}, which is not a unit that is read; allowed are {FEW_UNITS} ..."
@@ -123,7 +126,7 @@ def parse_quantity(text: str, unit: str) -> float:
     except pint.DimensionalityError:
         raise InvalidQuantity(f"{shown(text)} has the wrong dimension; {expected()}") from None
     except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
-        raise InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}; {expected()}") from None
+        raise unknown() from None
     if not math.isfinite(converted):
         raise InvalidQuantity(f"{shown(text)} is not finite; {expected()}")
     if converted == 0 and re.search("[1-9]", re.split("[eE]", parts["number"])[0]):

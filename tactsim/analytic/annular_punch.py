@@ -24,6 +24,8 @@ TERMS = (16, 32, 64, 128, 256, 512, 1024, 2048)
 """Numbers of points tried in turn."""
 DECAYED = 50.0
 """Thicknesses beside the punch after which a layer is at rest: its modes decay at least like exp(-0.739 r / h)."""
+RADII = 33
+"""Radii of the hole among which its highest place is looked for first."""
 CHUNK = 1000
 """Radii evaluated at a time, which bounds the memory."""
 
@@ -104,6 +106,20 @@ class AnnularPunch:
     def rise_factor(self) -> float:
         """Height of the surface on the axis above the face of the punch, over eps; above 1 it stands above the free surface."""
         return float(self.rise(0.0))
+
+    @property
+    def largest_rise_factor(self) -> float:
+        """Largest height of the surface in the hole above the face, over eps: off the axis on layers thin beside the hole."""
+        if self._solid:
+            return 0.0
+        radii = np.linspace(0.0, self.radius_ratio, RADII, endpoint=False)
+        rises = self.rise(radii)
+        highest = int(rises.argmax())
+        if highest == 0:
+            return float(rises[0])
+        around = float(radii[highest - 1]), float(min(radii[highest] + radii[1], self.radius_ratio))
+        peak = scipy.optimize.minimize_scalar(lambda r: -float(self.rise(r)), bounds=around, method="bounded")
+        return -float(peak.fun)
 
     @property
     def _solid(self) -> bool:

@@ -13,6 +13,11 @@ from tactsim.errors import InvalidQuantity
 from tactsim.model import FrozenModel
 from tactsim.units import Force, Length
 
+ASSUMED = (
+    "durometer by its given dimensions, by default those of type OO of ASTM D2240, recalled and not looked up; its presser foot, "
+    "and how long it rests, do not count"
+)
+"""What every simulated reading assumes."""
 FULL = 100.0
 """Largest reading."""
 LARGEST_MODULUS = 1e15

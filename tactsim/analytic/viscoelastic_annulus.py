@@ -68,6 +68,8 @@ class ViscoelasticAnnulus:
     """kappa, dimensionless."""
     rise_factor: float = field(init=False)
     """Height of the tissue on the axis above the face, over the displacement; always that of the exact solution."""
+    touch_factor: float = field(init=False)
+    """The largest height in the hole, over the displacement: a small sensor as wide as the hole is touched there first."""
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "outer_radius", float(checked("outer radius", self.outer_radius, "(0, inf) m")))
@@ -76,16 +78,23 @@ class ViscoelasticAnnulus:
                 raise InvalidQuantity(f"the formula {self.formula!r} is for a half-space; allowed on a layer: 'exact'")
             ratio = float(checked("radius ratio", self.radius_ratio, "[0, 0.99]"))
             punch = solve_annular_punch(ratio, radius_over_thickness=self.radius_over_thickness, base=self.base)
-            factors = punch.force_factor, punch.rise_factor
+            factors = punch.force_factor, punch.rise_factor, punch.largest_rise_factor
         else:
-            factors = float(force_factor(self.radius_ratio, self.formula)), float(rise_factor(self.radius_ratio))
+            rise = float(rise_factor(self.radius_ratio))  # on a half-space the axis is highest
+            factors = float(force_factor(self.radius_ratio, self.formula)), rise, rise
         object.__setattr__(self, "force_factor", factors[0])
         object.__setattr__(self, "rise_factor", factors[1] if self.radius_ratio else 0.0)
+        object.__setattr__(self, "touch_factor", factors[2] if self.radius_ratio else 0.0)
 
     @property
     def length(self) -> float:
         """8 a kappa in m: the force per displacement and shear modulus."""
         return 8 * self.outer_radius * self.force_factor
+
+    @property
+    def thickness(self) -> float:
+        """Of the layer in m; infinite for a half-space."""
+        return self.outer_radius / self.radius_over_thickness if self.radius_over_thickness else np.inf
 
     def displacement(self, force_history: History, times: ArrayLike) -> np.ndarray:
         """Displacement in m under a force in N, positive into the tissue, at ``times`` in s; of the shape of ``times``.
@@ -121,12 +130,26 @@ class ViscoelasticAnnulus:
         """Height in m of the tissue on the axis above the face at a ``displacement`` in m, of its shape."""
         return self.rise_factor * np.asarray(displacement, dtype=float)
 
+    def touch_displacement(self, recess: ArrayLike) -> np.ndarray:
+        """Displacement in m at which the tissue in the hole has risen by ``recess`` in m, of its shape.
+
+        Infinite without a hole, and where it would not be smaller than the thickness of the layer.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a recess is not positive.
+        """
+        with np.errstate(divide="ignore"):
+            depth = checked("recess", recess, "(0, inf) m") / np.float64(self.touch_factor)
+        return np.where(depth < self.thickness, depth, np.inf)
+
     def force_to_touch(self, recess: ArrayLike, times: ArrayLike) -> np.ndarray:
-        r"""Constant force in N for which the tissue on the axis rises by ``recess`` in m within ``times`` in s, broadcast.
+        r"""Constant force in N for which the tissue in the hole rises by ``recess`` in m within ``times`` in s, broadcast.
 
         .. math:: P = \frac{8 a \kappa L}{\rho J(t)}
 
-        with the rise factor rho; infinite without a hole.
+        with the touch factor rho; infinite without a hole, and where the annulus would reach the base of the layer first.
 
         Raises
         ------
@@ -136,12 +159,13 @@ class ViscoelasticAnnulus:
         height = checked("recess", recess, "(0, inf) m")
         compliance = self.shear_compliance.creep(checked("time", times, "[0, inf] s"))
         with np.errstate(divide="ignore"):
-            return height * self.length / (np.float64(self.rise_factor) * compliance)
+            force = height * self.length / (np.float64(self.touch_factor) * compliance)
+        return np.where(np.isfinite(self.touch_displacement(height)), force, np.inf)
 
     def time_to_touch(self, recess: ArrayLike, force: ArrayLike) -> np.ndarray:
-        """Time in s after which a constant ``force`` in N has raised the tissue on the axis by ``recess`` in m, broadcast.
+        """Time in s after which a constant ``force`` in N has raised the tissue in the hole by ``recess`` in m, broadcast.
 
-        Zero if it does so at once, infinite if never.
+        Zero if it does so at once, infinite if never, or if the annulus would reach the base of the layer first.
 
         Raises
         ------
@@ -150,7 +174,8 @@ class ViscoelasticAnnulus:
         """
         height, load = checked("recess", recess, "(0, inf) m"), checked("force", force, "(0, inf) N")
         with np.errstate(divide="ignore"):
-            return creep_time(self.shear_compliance, height * self.length / (np.float64(self.rise_factor) * load))
+            compliance = height * self.length / (np.float64(self.touch_factor) * load)
+        return creep_time(self.shear_compliance, np.where(np.isfinite(self.touch_displacement(height)), compliance, np.inf))
 
 
 def creep_time(kelvin: GeneralizedKelvin, compliance: ArrayLike) -> np.ndarray:

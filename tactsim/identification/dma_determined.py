@@ -46,10 +46,13 @@ class Determination:
         """The finding in one sentence."""
         determined = [name for name, yes in zip(self.names, self.determined, strict=True) if yes]
         hidden = [name for name, yes in zip(self.names, self.determined, strict=True) if not yes]
+        numbers = f"{self.data_count} numbers with a relative noise of {self.noise:.2g} determine"
+        if not hidden:
+            return f"{numbers} each of the {len(self.names)} constants"
         return (
-            f"{self.data_count} numbers with a relative noise of {self.noise:.2g} determine {self.determined_combinations} "
-            f"combinations of the {len(self.names)} constants; they determine {', '.join(determined) or 'none'} alone, "
-            f"and do not determine {', '.join(hidden) or 'none'}: trust the curves, not the constants"
+            f"{numbers} {self.determined_combinations} combinations of the {len(self.names)} constants; they determine "
+            f"{', '.join(determined) or 'none'} alone, and do not determine {', '.join(hidden)}: trust the curves, not the "
+            "constants"
         )
 
 

@@ -46,6 +46,8 @@ def test_text_is_read_in_any_unit_of_the_dimension(text: str, unit: str, value: 
         ("-inf m", "is not finite"),
         ("1e308 km", "is not finite"),
         ("m", "is not a quantity"),
+        ("3 mm2", r"unknown unit 'mm2' \(is it 'mm\^2'\?\)"),
+        ("3 mx2", "unknown unit 'mx2';"),
         ("1,5 mm", "decimals begin with a point, not a comma"),
         ("1_0 m", "has an unknown unit"),
         ("٣ m", "is not a quantity"),
@@ -89,6 +91,14 @@ def test_what_is_written_is_written_to_be_read() -> None:
     assert written_quantity(7838.8393223224548, "Pa") == "7.838839322322455 kPa"
     assert [written_quantity(value, "m") for value in (0.04, 0.0, 8e-4)] == ["40 mm", "0 m", "800 µm"]
     assert written_quantity(parse_quantity("20 deg", "rad"), "rad") == "20 deg"
+
+
+@pytest.mark.parametrize(("text", "unit"), [("6.28 rad/s", "Hz"), ("360 deg/s", "Hz"), ("1 Hz", "rad/s"), ("5 %", "rad")])
+def test_an_angle_is_no_plain_number(text: str, unit: str) -> None:
+    """Pint holds 1 rad/s for 1 Hz, 2 pi times too fast, as rheometers print angular frequencies."""
+    assert parse_quantity("6 1/s", "Hz") == parse_quantity("6 Hz", "Hz") == 6.0
+    with pytest.raises(InvalidQuantity, match="wrong dimension"):
+        parse_quantity(text, unit)
 
 
 def test_a_unit_that_does_not_begin_at_zero_is_refused() -> None:

@@ -11,6 +11,7 @@ from pydantic import Field, model_validator
 from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT, ViscoelasticAnnulus
+from tactsim.array import Array
 from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, Ratio
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
@@ -41,7 +42,9 @@ class AnnulusDesign(Experiment):
 
     .. math:: \epsilon = \frac{P J(t)}{8 a \kappa}, \quad \text{rise} = \rho\, \epsilon \ge L \text{ where the tissue touches}
 
-    with force factor kappa and rise factor rho of the exact contact. Thesis section 4.7 takes eps itself for the rise.
+    with force factor kappa and touch factor rho of the exact contact: the largest rise in the hole, which is on the axis but for
+    layers thin beside it. Thesis section 4.7 takes eps itself for the rise. What would press the annulus to the base of a layer
+    has no value.
     """
 
     kind: Literal["annulus_design"] = "annulus_design"
@@ -83,8 +86,15 @@ class AnnulusDesign(Experiment):
     @model_validator(mode="after")
     def _ordered(self) -> Self:
         check_increasing(ratios=self.ratios, recesses=self.recesses, forces=self.forces, times=self.times)
-        if self.forces[-1] > self.largest_force or self.recommended_force > self.largest_force:
-            raise ValueError(f"a force is beyond the largest one of {format_quantity(self.largest_force, 'N')}")
+        given = {
+            "forces": self.forces[-1],
+            "recommended_force": self.recommended_force,
+            "design_point.force": self.design_point.force,
+        }
+        for name, force in given.items():
+            if force > self.largest_force:
+                beyond, most = format_quantity(force, "N"), format_quantity(self.largest_force, "N")
+                raise ValueError(f"{name}: {beyond} is beyond the largest one of {most}; lower it or raise largest_force")
         if self.thickness is not None and self.formula != "exact":
             raise ValueError(f"the formula {self.formula!r} is for a half-space; on a layer take 'exact'")
         return self
@@ -139,7 +149,7 @@ class AnnulusDesign(Experiment):
         limits = np.array([self.recommended_force, self.largest_force])
         for annulus in annuli:
             for recess in self.recesses:
-                displacement = recess / annulus.rise_factor
+                displacement = float(annulus.touch_displacement(recess))
                 times = annulus.time_to_touch(recess, limits)
                 values = {
                     "radius_ratio": annulus.radius_ratio,
@@ -155,16 +165,18 @@ class AnnulusDesign(Experiment):
     def _map(self, annuli: list[ViscoelasticAnnulus]) -> dict[str, Quantity]:
         """The arrays over ratio, recess, force and time."""
         forces, times, recesses = np.array(self.forces), np.array(self.times), np.array(self.recesses)
-        displacement = np.array([a.creep_displacement(forces[:, None], times) for a in annuli])
-        rise = np.array([a.rise(d) for a, d in zip(annuli, displacement, strict=True)])
+        displacement = np.array([_above_base(a, a.creep_displacement(forces[:, None], times)) for a in annuli])
+        rise = np.array([a.touch_factor * d for a, d in zip(annuli, displacement, strict=True)])
         force = np.array([a.force_to_touch(recesses[:, None], times) for a in annuli])
         moment = np.array([a.time_to_touch(recesses[:, None], forces) for a in annuli])
-        rise_factors = np.array([a.rise_factor for a in annuli])
         relative = displacement / self.outer_radius
-        limits = np.array([[a.rise(a.creep_displacement(f, times)) for a in annuli] for f in self._limits])
-        touching = recesses / rise_factors[:, None] / self.outer_radius  # whatever the time
+        limits = np.array(
+            [[a.touch_factor * _above_base(a, a.creep_displacement(f, times)) for a in annuli] for f in self._limits]
+        )
+        depth = np.array([a.touch_displacement(recesses) for a in annuli])  # whatever the time
+        touches = (rise[:, None] >= recesses[:, None, None]) & np.isfinite(depth)[:, :, None, None]
         return {
-            "rise": _quantity(rise, "m", "rise of the tissue on the axis [ratio, force, time]"),
+            "rise": _quantity(rise, "m", "largest rise of the tissue in the hole [ratio, force, time]"),
             "displacement": _quantity(displacement, "m", "displacement of the annulus [ratio, force, time]"),
             "displacement_over_radius": _quantity(relative, "1", "displacement over outer radius [ratio, force, time]"),
             "outside_small_displacement": _quantity(
@@ -172,12 +184,12 @@ class AnnulusDesign(Experiment):
             ),
             "force_to_touch": _quantity(force, "N", "constant force to touch [ratio, recess, time]"),
             "time_to_touch": _quantity(moment, "s", "time to touch, null if never [ratio, recess, force]"),
-            "touches": _quantity(
-                rise[:, None] >= recesses[:, None, None], "1", "whether the tissue touches [ratio, recess, force, time]"
-            ),
+            "touches": _quantity(touches, "1", "whether the tissue touches [ratio, recess, force, time]"),
             "deepest_recess_recommended": _quantity(limits[0], "m", "recess just touched at the recommended force [ratio, time]"),
             "deepest_recess_largest": _quantity(limits[1], "m", "recess just touched at the largest force [ratio, time]"),
-            "touch_displacement_over_radius": _quantity(touching, "1", "displacement over outer radius at touch [ratio, recess]"),
+            "touch_displacement_over_radius": _quantity(
+                depth / self.outer_radius, "1", "displacement over outer radius at touch [ratio, recess]"
+            ),
         }
 
     @property
@@ -190,16 +202,17 @@ class AnnulusDesign(Experiment):
         thesis = atrial_shear_compliance("viscosities", "half_shear")
         printed = ViscoelasticAnnulus(self.outer_radius, point.ratio, thesis, "thesis_4_2_21")
         as_printed = printed.creep_displacement(point.force, point.time)
-        displacement = exact.creep_displacement(point.force, point.time)
-        rise = exact.rise(displacement)
+        displacement = _above_base(exact, exact.creep_displacement(point.force, point.time))
+        rise = exact.touch_factor * displacement
+        touches = rise >= point.recess and np.isfinite(exact.touch_displacement(point.recess))
         return {
             "point_displacement_printed": _quantity(as_printed, "m", "design point: displacement as printed, eq. 4.6.4"),
             "point_touches_printed": _quantity(
                 as_printed >= point.recess, "1", "design point: displacement >= recess, as in 4.7"
             ),
             "point_displacement": _quantity(displacement, "m", "design point: displacement"),
-            "point_rise": _quantity(rise, "m", "design point: rise of the tissue on the axis"),
-            "point_touches": _quantity(rise >= point.recess, "1", "design point: whether the tissue touches"),
+            "point_rise": _quantity(rise, "m", "design point: largest rise of the tissue in the hole"),
+            "point_touches": _quantity(touches, "1", "design point: whether the tissue touches"),
             "point_force_to_touch": _quantity(
                 exact.force_to_touch(point.recess, point.time), "N", "design point: force to touch"
             ),
@@ -220,6 +233,11 @@ class AnnulusDesign(Experiment):
         ]
 
 
+def _above_base(annulus: ViscoelasticAnnulus, displacement: Array) -> Array:
+    """Displacements in m, infinite where they are not smaller than the thickness of the layer."""
+    return np.where(displacement < annulus.thickness, displacement, np.inf)
+
+
 def _quantity(values: Any, unit: str, description: str) -> Quantity:
     """Plain values, None where they are infinite."""
     array = np.asarray(values)
@@ -230,9 +248,11 @@ def _quantity(values: Any, unit: str, description: str) -> Quantity:
 
 def _judged(quantities: dict[str, Quantity]) -> str:
     """The design point in words."""
-    rise = format_quantity(quantities["point_rise"].value, "m")
+    rise = quantities["point_rise"].value
     words = "touches" if quantities["point_touches"].value else "does not touch"
-    return f"at the design point the tissue rises by {rise} and {words}"
+    if rise is None:
+        return f"at the design point the annulus would be pressed to the base of the layer; the tissue {words} before"
+    return f"at the design point the tissue rises by {format_quantity(rise, 'm')} and {words}"
 
 
 def _warnings(quantities: dict[str, Quantity]) -> Iterator[str]:
@@ -241,6 +261,13 @@ def _warnings(quantities: dict[str, Quantity]) -> Iterator[str]:
     outside = np.mean(quantities["outside_small_displacement"].value)
     if outside:
         yield f"{outside:.0%} of the map has a displacement beyond {SMALL_DISPLACEMENT:g} of the outer radius"
-    beyond = np.mean(np.array(quantities["touch_displacement_over_radius"].value) > SMALL_DISPLACEMENT)
+    touching = np.array(quantities["touch_displacement_over_radius"].value, dtype=float)
+    beyond = np.mean(touching > SMALL_DISPLACEMENT)
     if beyond:
         yield f"{beyond:.0%} of the sensors are touched only beyond that, where linear theory is no more than a hint"
+    base = "would be pressed to the base of the layer, where nothing is reported"
+    pressed = np.mean(np.isnan(np.array(quantities["displacement"].value, dtype=float)))
+    if pressed:
+        yield f"in {pressed:.0%} of the map the annulus {base}"
+    if never := np.mean(np.isnan(touching)):
+        yield f"{never:.0%} of the sensors {base}, before they are touched"

@@ -160,7 +160,8 @@ class DmaReport:
         return quantities
 
     def _warnings(self, quantities: dict[str, Quantity]) -> list[str]:
-        warnings = [finding.determination.statement() for finding in list(self.fits.values())[:1]]
+        determinations = [finding.determination for finding in list(self.fits.values())[:1]]
+        warnings = [one.statement() for one in determinations if not one.determined.all()]
         estimates = () if self.analysis is None else self.analysis.estimates
         coloured = [f"{estimate.frequency:g}" for estimate in estimates if not estimate.has_white_residuals]
         if coloured:

@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tactsim.analytic.durometer import DurometerScale
+from tactsim.analytic.durometer import ASSUMED, DurometerScale
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
@@ -197,9 +197,7 @@ class ElastomerRanking(Experiment):
             f"{format_quantity(size.thickness, 'm')}, on a fixed base (from the case; the thesis prints none)"
             for name, size in sizes
         ]
-        assumptions.append(
-            "durometer of type OO by its recalled dimensions; its presser foot, and how long it rests, do not count"
-        )
+        assumptions.append(ASSUMED)
         assumptions.append(
             "all elastomers share the shape of energy, so that the threshold and the predicted reading rank them alike"
         )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.analytic.durometer import FULL, DurometerScale, hertz_force, hertz_modulus, hertz_reading
+from tactsim.analytic.durometer import ASSUMED, FULL, DurometerScale, hertz_force, hertz_modulus, hertz_reading
 from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.record import IndentationRecord, StartedPath
 from tactsim.experiments.indentation.setup import IndentationSetup
@@ -108,6 +108,10 @@ class DurometerRecord(IndentationRecord):
             return force / depth
         exponent = np.log(force / last["reaction_force"]) / np.log(depth / last["displacement"])
         return float(exponent * force / depth)
+
+    def assumptions(self) -> list[str]:
+        """Those of an indentation, and what of a real durometer is left out."""
+        return [*super().assumptions(), ASSUMED]
 
     def warnings(self) -> list[str]:
         """Those of an indentation, and what ASTM D2240 says of the reading and of the specimen."""

@@ -98,8 +98,10 @@ class SwitchProbeSetup(FrozenModel):
     @model_validator(mode="after")
     def _consistent(self) -> Self:
         names = [tissue.name for tissue in self.tissues]
-        if len(set(names)) < len(names) or len(set(self.rates)) < len(self.rates):
-            raise ValueError("two tissues have the same name, or two rates are equal")
+        for name in [name for name in names if names.count(name) > 1][:1]:
+            raise ValueError(f"two tissues are named {name}; allowed: each name once")
+        for rate in [rate for rate in self.rates if self.rates.count(rate) > 1][:1]:
+            raise ValueError(f"two rates are {format_quantity(rate, 'm/s')}; allowed: each rate once")
         if self.array.count != COUNT:
             raise ValueError(f"array.count is {self.array.count}; the probe of chapter 5 has {COUNT} switches")
         if self.depth >= self.block.height:

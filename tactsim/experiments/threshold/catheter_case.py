@@ -13,7 +13,7 @@ from tactsim.experiments.threshold.valve_tissue import ValveSurface
 from tactsim.model import FrozenModel
 from tactsim.sensors.threshold.sensor_ring import SensorRing
 from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
-from tactsim.units import Angle, Length, Speed, Time
+from tactsim.units import Angle, Length, Speed, Time, format_quantity
 
 STEEPEST = np.pi / 6 * (1 + 1e-12)
 """Largest tilt in rad of the tip: 30 degrees, whatever the rounding."""
@@ -54,10 +54,11 @@ class CatheterCase(FrozenModel):
     @model_validator(mode="after")
     def _deep_enough(self) -> Self:
         for tissue in self.surface.tissues:
-            if self.press >= tissue.thickness:
-                raise ValueError(f"the tip presses deeper than the {tissue.name} is thick; lower press")
-            if self.ring.recess >= tissue.thickness:
-                raise ValueError(f"the recess must be smaller than the thickness of the {tissue.name} (thesis, end of 3.1.1)")
+            most = format_quantity(tissue.thickness, "m")
+            for name, given in (("press", self.press), ("ring.recess", self.ring.recess)):
+                if given >= tissue.thickness:
+                    length = format_quantity(given, "m")
+                    raise ValueError(f"{name} {length} must be smaller than the thickness of the {tissue.name}, {most}")
             if tissue.threshold_pressure is not None and not self._scalable():
                 raise ValueError(
                     f"the {tissue.name} has a threshold_pressure, which needs model: {{kind: closed_form}} and elastic tissues; "

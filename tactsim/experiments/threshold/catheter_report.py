@@ -16,6 +16,8 @@ from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.experiments.threshold.tip_contact import SensorContact, TipContact
 from tactsim.interfaces.run import Findings
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.units import format_quantity
@@ -229,6 +231,17 @@ class CatheterReport:
         yield from experiment.model.assumptions(experiment.ring.recess / experiment.ring.outer_radius)
         yield "the face of a tilted sensor is taken as flat on the tissue: the tilt only delays its touch"
 
+    def _oddities(self) -> Iterator[str]:
+        """What looks like a wrong unit, and a tip that stands on one tissue alone."""
+        experiment, ring = self._experiment, self._experiment.ring
+        tissues = experiment.surface.tissues
+        materials = {f"tissue {one.name}": NeoHookean(c10=one.shear_modulus / 2) for one in tissues}
+        lengths = {"ring.outer_radius": ring.outer_radius, "ring.inner_radius": ring.inner_radius}
+        yield from oddities(materials, tissue={f"tissue {one.name}": one.thickness for one in tissues}, bodies=lengths)
+        alone = np.flatnonzero((self._shares == 1).all(axis=0))
+        for tissue in alone.tolist():
+            yield f"every sensor stands on the {tissues[tissue].name}: no other tissue can be found; move place, or see borders"
+
     def _warnings(self) -> Iterator[str]:
         for index, reading in enumerate(self._readings, 1):
             if reading.state != "measured":
@@ -248,6 +261,7 @@ class CatheterReport:
             yield f"{len(low)} thresholds, {least} at least, are below the resolution of {resolved} of 3.1.2 (erratum E27)"
         if self._experiment.ring.count < ASKED:
             yield f"{self._experiment.ring.count} sensors around the tip; the thesis asks for at least {ASKED} (7.3)"
+        yield from self._oddities()
         if self._experiment.model.kind != "closed_form":
             return
         deepest = max((c.displacement for c in self._contacts), default=0.0) / self._experiment.ring.outer_radius

@@ -92,8 +92,13 @@ class ContactCurve:
             If a number is negative, the small sensor is never touched, or not after a rise by the recess.
         """
         d, plate, rise, small = (columns[name] for name in ("displacement", "plate force", "tissue rise", "small sensor force"))
-        if min(d.min(), plate.min(), small.min()) < 0:
-            raise InvalidQuantity("a contact curve holds a negative displacement or force; allowed: 0 and above")
+        for name, unit in (("displacement", "m"), ("plate force", "N"), ("small sensor force", "N")):
+            for row in np.flatnonzero(columns[name] < 0)[:1]:
+                given = format_quantity(float(columns[name][row]), unit)
+                raise InvalidQuantity(f"{name} in row {row + 1} is {given}, negative; allowed: 0 and above")
+        for row in np.flatnonzero(np.diff(d) <= 0)[:1]:
+            after, before = (format_quantity(float(d[row + k]), "m") for k in (1, 0))
+            raise InvalidQuantity(f"displacement in row {row + 2} is {after} after {before}; allowed: rows that increase")
         pressed = small > 0
         if not pressed.any() or pressed[0]:
             raise InvalidQuantity("a contact curve must begin before the small sensor is touched and go on past the touch")

@@ -6,6 +6,7 @@ from abc import abstractmethod
 from collections.abc import Generator
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.histories import History, Segment
@@ -15,7 +16,7 @@ from tactsim.errors import InvalidQuantity, Unfinished
 from tactsim.experiments.annulus.closed_form import check_closed_form
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.threshold.contact_curve import Approach, ContactCurve, SensorShape
-from tactsim.identification.columns import read_columns
+from tactsim.identification.columns import of_file, read_columns
 from tactsim.interfaces.run import run_within_another
 from tactsim.materials import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_compliance
@@ -39,7 +40,7 @@ class ClosedFormTissue:
 
     def approach(self, speed: float) -> Approach:
         """The forces over time at a speed in m/s."""
-        rise = self._annulus.rise_factor
+        rise = self._annulus.touch_factor
         touch = self.shape.recess / rise / speed
         duration = touch + self._beyond / speed
         down, inward = (History((Segment(0.0, duration, 0.0, rate),)) for rate in (speed, rise * speed))
@@ -98,7 +99,13 @@ class ClosedFormSource(Source):
         return self
 
     def tissue(self) -> Generator[StepRecord, None, ClosedFormTissue]:
-        """The contact in closed form."""
+        """The contact in closed form.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the annulus would be pressed to the base of the tissue before the small sensor is touched.
+        """
         yield from ()
         compliance = shear_compliance(self.material)
 
@@ -108,6 +115,12 @@ class ClosedFormSource(Source):
 
         shape = SensorShape(self.inner_radius, self.outer_radius, self.recess)
         annulus = punch(self.outer_radius, self.inner_radius / self.outer_radius)
+        if not np.isfinite(annulus.touch_displacement(self.recess)):
+            most = format_quantity(annulus.touch_factor * annulus.thickness, "m")
+            raise InvalidQuantity(
+                f"source.recess {format_quantity(self.recess, 'm')}: the annulus would be pressed to the base of the tissue, "
+                f"{format_quantity(annulus.thickness, 'm')} thick, before it is touched; allowed: less than {most} on this tissue"
+            )
         return ClosedFormTissue(shape, annulus, punch(self.inner_radius, 0.0), self.beyond)
 
     def assumptions(self) -> list[str]:
@@ -183,14 +196,12 @@ class CurveSource(Source):
         Raises
         ------
         InvalidQuantity
-            If a column is missing.
+            If a column is missing, or the rows make no curve; with the file.
         """
         yield from ()
-        columns = read_columns(self.path, COLUMNS)
-        missing = [name for name in COLUMNS if name not in columns]
-        if missing:
-            raise InvalidQuantity(f"{self.path}: no column {missing[0]!r}; needed: {', '.join(COLUMNS)}")
-        return ContactCurve.of_rows(SensorShape(self.inner_radius, self.outer_radius, self.recess), columns)
+        columns = read_columns(self.path, COLUMNS, complete=True)
+        with of_file(self.path):
+            return ContactCurve.of_rows(SensorShape(self.inner_radius, self.outer_radius, self.recess), columns)
 
 
 AnySource = Annotated[ClosedFormSource | RunSource | IndentationSource | CurveSource, Field(discriminator="kind")]

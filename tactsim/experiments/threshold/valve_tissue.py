@@ -79,7 +79,7 @@ def _contact(tissue: BandTissue, ring: SensorRing) -> SensorContact:
     a, b, recess = ring.outer_radius, ring.inner_radius, ring.recess
     annulus = solve_annular_punch(b / a, radius_over_thickness=a / tissue.thickness, base=tissue.base)
     punch = solve_annular_punch(0.0, radius_over_thickness=b / tissue.thickness, base=tissue.base)
-    displacement = recess / annulus.rise_factor
+    displacement = recess / annulus.largest_rise_factor
     force = 8 * tissue.shear_modulus * a * annulus.force_factor * displacement
     if tissue.threshold_pressure is not None:
         force = tissue.threshold_pressure * ring.area

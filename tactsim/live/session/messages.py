@@ -91,11 +91,14 @@ class Scales:
         self.ends = np.maximum(self.ends, [*largest, strongest])
 
     def take_range(self, signals: list[tuple[Array, Array]]) -> None:
-        """Lets signals (jaw, row, column) in N and forces in, without drawing them: pictures never exceed these sums."""
+        """Lets signals (jaw, row, column) in N and forces in, without drawing them: pictures never exceed these sums.
+
+        A section between two arrays is brightest where both add up (eq. .2.4); the top view has a section between any two rows.
+        """
         for signal, forces in signals:
-            upper, lower = np.maximum(signal, 0.0)
-            sums = (np.maximum(upper.sum(0), lower.sum(0)), np.maximum(upper.sum(1), lower.sum(1)), upper + lower)
-            self.take([np.asarray(part) for part in sums], forces)
+            both = np.maximum(signal, 0.0).sum(axis=0)
+            pairs = both[:-1] + both[1:] if len(both) > 1 else both
+            self.take([both.sum(axis=0), both.sum(axis=1), pairs], forces)
 
 
 def frame_message(scene: PageScene, frame: Frame, readings: Readings | TactsimError, scales: Scales, **more: Any) -> bytes:

@@ -26,7 +26,7 @@ Places = Annotated[
     int, Field(ge=1, le=1000, description="Places of the tip, drawn along the band; its orientation is drawn too.")
 ]
 Touches = Annotated[int, Field(ge=1, le=10_000, description="Touches at each place.")]
-Number = Literal["reached", "found", "named", "bias"]
+Number = Literal["reached", "found", "found_where_reached", "named", "bias"]
 
 
 @quantity(unit="1")
@@ -44,8 +44,8 @@ def catheter_search(
     """How well a tip with so many sensors finds a tissue, over places where its circle of sensors meets it; dimensionless.
 
     ``reached`` is the part of the places at which a sensor lies mostly on the tissue; ``found`` the part of the touches in which
-    the sensor named the hardest does; ``named`` the part in which the sensor with the highest true threshold is named; ``bias``
-    the mean relative difference of the reported thresholds from the true ones.
+    the sensor named the hardest does, ``found_where_reached`` the same over those places; ``named`` the part in which the sensor
+    with the highest true threshold is named; ``bias`` the mean relative difference of the reported thresholds from the true ones.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def catheter_search(
         _counted(number, result, band)
         for result, band in _runs(inputs, case, tissue, sensors=sensors, places=places, touches=touches, seed=seed)
     ]
-    return float(np.mean(values))
+    return float(np.nanmean(values))
 
 
 @drawing
@@ -126,8 +126,11 @@ def _runs(
 def _counted(number: Number, result: Result, band: int) -> float:
     """A number of ``catheter_search`` at one place."""
     share = np.array(result.quantities["tissue_share"].value)[:, band]
+    reached = bool((share > MOSTLY).any())
     if number == "reached":
-        return float((share > MOSTLY).any())
+        return float(reached)
+    if number == "found_where_reached" and not reached:
+        return np.nan
     true = result.quantities["threshold_force"].numbers
     if number == "bias":
         reported = np.array([np.nan if v is None else v for v in result.quantities["reported_force"].value])

@@ -77,6 +77,26 @@ def test_a_layer_takes_its_factors_from_the_solved_contact():
     assert layer.rise_factor > annulus().rise_factor
 
 
+def test_a_small_sensor_is_touched_where_the_tissue_stands_highest():
+    """On the axis of a half-space; off it on a layer of a quarter of the radius, by 13 % (ring patches of 200: 1.9914)."""
+    half_space, thin = annulus(0.5), annulus(0.5, radius_over_thickness=4.0)
+    assert half_space.touch_factor == half_space.rise_factor
+    assert thin.touch_factor == pytest.approx(1.9914, rel=1e-4)
+    assert thin.rise_factor < 0.9 * thin.touch_factor
+    punch = solve_annular_punch(0.5, radius_over_thickness=4.0)
+    assert thin.touch_factor == pytest.approx(punch.rise(np.linspace(0, 0.499, 500)).max(), rel=1e-5)
+
+
+def test_nothing_is_touched_beyond_the_base_of_a_layer():
+    """The annulus has gone through a layer of 3 mm / 2 before tissue rises by twice that: no force, no time."""
+    thin = annulus(0.4, radius_over_thickness=2.0)
+    reached = thin.touch_factor * thin.thickness
+    assert thin.thickness == pytest.approx(thin.outer_radius / 2)
+    for recess, touched in ((0.99 * reached, True), (1.01 * reached, False)):
+        numbers = thin.touch_displacement(recess), thin.force_to_touch(recess, 1.0), thin.time_to_touch(recess, 1e9)
+        assert [bool(np.isfinite(number)) for number in numbers] == [touched] * 3
+
+
 @pytest.mark.parametrize("times", TIMES)
 def test_force_and_time_to_touch_are_each_others_inverse(times):
     sensor = annulus(0.1, atrial_shear_compliance(times))

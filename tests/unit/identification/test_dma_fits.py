@@ -133,6 +133,15 @@ def test_what_the_data_do_not_determine_is_reported():
     assert "e_8" in determined.statement()
 
 
+def test_data_that_determine_every_constant_are_not_warned_of():
+    """Two units a decade apart within the frequencies, at a noise of 1e-4."""
+    model = KelvinConstants(6.5e3, np.array([16e3, 8e3]), np.array([0.02, 0.3])).model()
+    data = synthetic_dma(model, frequencies=np.geomspace(0.2, 30, 12), noise=1e-4, seed=1)
+    determined = determination(fit_least_squares(data, units=2))
+    assert determined.determined.all()
+    assert determined.statement() == "24 numbers with a relative noise of 0.0001 determine each of the 5 constants"
+
+
 def test_standard_errors_follow_from_the_sensitivities():
     fit = fit_least_squares(DATA)
     determined = determination(fit)

@@ -21,6 +21,7 @@ from tactsim.live.session.thinking import estimate_message
 from tactsim.live.sources.recorded import result_recordings, source_noise
 from tactsim.live.sources.reference import PlainResult, Reference
 from tactsim.live.sources.samples import Samples
+from tactsim.localization.views import views
 from tactsim.results import Quantity, write_result
 
 BY_NAME = {choice.name: choice for choice in offered_choices()}
@@ -251,6 +252,17 @@ def test_pictures_end_at_the_largest_value_so_far(tmp_path: Path) -> None:
         readings = frame_readings(recording.scene, recording.at(time), BY_NAME["thesis"], None)
         message = frame_message(recording.scene, recording.at(time), readings, scales)
         assert max(message[-18000:]) == pytest.approx(255 * time, abs=1)
+
+
+@pytest.mark.parametrize("shape", [(3, 3), (1, 1), (1, 6), (5, 2), (16, 16)])
+def test_the_scale_of_a_recording_holds_all_of_its_pictures(shape: tuple[int, int]) -> None:
+    """A picture is as bright as both arrays together, the top view as two rows: a scale of one array grew while it played."""
+    signal = np.random.default_rng(0).uniform(0.1, 1.0, (2, *shape))
+    scales = Scales()
+    scales.take_range([(signal, signal)])
+    drawn = views(signal)
+    for picture, end in zip((drawn.front, drawn.left, drawn.top), scales.ends, strict=False):
+        assert 0.9 * end < picture.max() <= end
 
 
 def test_a_sample_shows_what_the_store_holds_and_where_the_lump_was(tmp_path: Path) -> None:

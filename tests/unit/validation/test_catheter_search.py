@@ -26,6 +26,15 @@ def test_more_sensors_reach_the_annulus_more_often():
     assert found <= reached[1], "a sensor can only be named on the annulus where one lies on it"
 
 
+def test_where_no_sensor_lies_on_the_annulus_nothing_counts():
+    """Of ten places two sensors reach some: the share of what is found there is the share of all over that of the places."""
+    settings = {"sensors": 2, "places": 10, "touches": 2}
+    reached, found, there = (search(number, **settings) for number in ("reached", "found", "found_where_reached"))
+    assert 0 < reached < 1
+    assert found == pytest.approx(reached * there)
+    assert there > found
+
+
 def test_the_right_sensor_and_the_bias():
     assert 0.5 < search("named") <= 1
     assert 0.2 < search("bias") < 1.5, "the trigger fires after the touch, so that thresholds are reported high"

@@ -38,8 +38,9 @@ class AnnulusDesignFigures(SingleFigure):
     kind: Literal["annulus_design"] = "annulus_design"
 
     def can_draw(self, result: Result) -> bool:
-        """Whether the map is complete."""
-        return "force_to_touch" in result.quantities
+        """Whether the map is complete, and a sensor is touched."""
+        force = result.quantities.get("force_to_touch")
+        return force is not None and bool(np.isfinite(np.array(force.value, dtype=float)).any())
 
     def figure(self, result: Result) -> Figure:
         """Maps of the force to touch with the limits of force, the end of linear theory and the design point."""
@@ -70,18 +71,20 @@ def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
     """The coloured force (recess, ratio), the contours of its limits, and hatching outside small displacements."""
     scene = result.scene_as(AnnulusDesignScene)
     ratio, recess = np.array(scene.ratios), 1e3 * np.array(scene.recesses)
-    drawn = axis.pcolormesh(ratio, recess, force, norm=norm, cmap="viridis", shading="gouraud", rasterized=True)
+    coloured = np.ma.masked_invalid(force)
+    drawn = axis.pcolormesh(ratio, recess, coloured, norm=norm, cmap="viridis", shading="gouraud", rasterized=True)
     for limit, colour in zip(_limits(result), LIMIT_COLOURS, strict=True):
-        if force.min() < limit < force.max():
+        if np.nanmin(force) < limit < np.nanmax(force):
             axis.contour(*_finer(ratio, recess, force), levels=[np.log(limit)], colors=[colour], linewidths=2)
-    relative, end = np.array(result.quantities["touch_displacement_over_radius"].value).T, scene.small_displacement
-    if relative.min() < end < relative.max():
+    relative = np.array(result.quantities["touch_displacement_over_radius"].value, dtype=float).T
+    end = scene.small_displacement
+    if np.nanmin(relative) < end < np.nanmax(relative):
         fine = _finer(ratio, recess, relative)
         hatched = axis.contourf(*fine, levels=np.log([end, RIM * end]), colors="none", hatches=["////"])
         hatched.set_edgecolor((1, 1, 1, 0.6))
         hatched.set_linewidth(0)
         axis.contour(*fine, levels=[np.log(end)], colors="white", linewidths=1.4, linestyles="dashed")
-    elif relative.min() >= end:
+    elif np.nanmin(relative) >= end:
         axis.text(0.03, ABOVE_POINT, "all outside small-displacement theory", transform=axis.transAxes, color="w", fontsize=8)
     axis.set_yscale("log")
     axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
@@ -108,8 +111,10 @@ def _draw_point(axis: Axes, result: Result, time: float) -> None:
     if time != point.time:
         return
     needed, rise = (_three_digits(result, name) for name in ("point_force_to_touch", "point_rise"))
+    lifted = f"lifts it by {rise}" if rise else "presses to the base"
+    touches = f"touches at {needed}" if needed else "never touched"
     axis.annotate(
-        f"design point: touches at {needed};\n{format_quantity(point.force, 'N')} lifts it by {rise}",
+        f"design point: {touches};\n{format_quantity(point.force, 'N')} {lifted}",
         (0.97, 0.03),
         xycoords="axes fraction",
         ha="right",
@@ -121,8 +126,9 @@ def _draw_point(axis: Axes, result: Result, time: float) -> None:
 
 
 def _three_digits(result: Result, name: str) -> str:
+    """A quantity as text, empty where it has no value."""
     quantity = result.quantities[name]
-    return format_quantity(float(f"{quantity.value:.3g}"), quantity.unit)
+    return "" if quantity.value is None else format_quantity(float(f"{quantity.value:.3g}"), quantity.unit)
 
 
 def _limits(result: Result) -> tuple[float, float]:
@@ -141,4 +147,8 @@ def _legend(result: Result) -> list[Any]:
     where = f"ri/ro = {point.ratio:g}, L = {format_quantity(point.recess, 'm')}"
     star = Line2D([], [], linestyle="none", marker="*", color=POINT_COLOUR, markersize=11, label=f"design point, {where}")
     end = f"above the dashed line: displacement at touch beyond {scene.small_displacement:g} ro, not small"
-    return [*lines, star, Patch(facecolor="0.6", edgecolor="white", hatch="///", label=end)]
+    patches = [Patch(facecolor="0.6", edgecolor="white", hatch="///", label=end)]
+    if None in np.array(result.quantities["touch_displacement_over_radius"].value, dtype=object):
+        never = "white: pressed to the base of the layer before it is touched"
+        patches.append(Patch(facecolor="white", edgecolor="0.6", label=never))
+    return [*lines, star, *patches]

@@ -106,9 +106,34 @@ def test_the_deepest_recess_is_touched_just_so(thesis):
 
 
 def test_a_thin_layer_rises_more_for_its_displacement():
-    half_space, layer = (values(run(thickness=t)) for t in (None, 4e-3))
+    half_space, layer = (values(run(thickness=t, forces=(0.5, 1.0))) for t in (None, 4e-3))
     assert (layer["rise"] / layer["displacement"] > half_space["rise"] / half_space["displacement"]).all()
     assert (layer["displacement"] < half_space["displacement"]).all()
+
+
+def test_what_would_go_through_a_layer_has_no_value_and_is_drawn():
+    """3 N press an annulus of 3 mm into 1 mm of tissue by more than that within 5 s, by linear theory; it stands on the base."""
+    result = run(ratios=(0.3, 0.9), thickness=1e-3)
+    quantities = values(result)
+    displacement, depth = quantities["displacement"], quantities["touch_displacement_over_radius"]
+    assert np.nanmax(displacement) < 1e-3
+    assert np.isnan(displacement).tolist() == np.isnan(quantities["rise"]).tolist()
+    assert np.isnan(displacement[1, 1, 1])
+    assert np.isnan(depth[:, 2]).all()  # a recess of 5 mm: neither is touched
+    assert np.isfinite(depth[:, 0]).all()
+    assert not quantities["touches"][:, 2].any()
+    assert quantities["touches"][1, 0, 1, 1]  # touched on the way
+    for name in ("force_to_touch", "time_to_touch"):
+        assert np.isnan(quantities[name][:, 2]).all()
+    assert any("base of the layer" in warning for warning in result.warnings)
+    assert figures_for(result)["annulus_design.png"]().startswith(b"\x89PNG")
+
+
+def test_a_design_point_that_goes_through_a_layer_is_said_to():
+    result = run(thickness=1e-3, design_point={"ratio": 0.9, "recess": 0.1e-3, "force": 3.0, "time": 5.0})
+    assert (result.quantities["point_rise"].value, result.quantities["point_touches"].value) == (None, 1)
+    assert "pressed to the base of the layer; the tissue touches before" in result.reason
+    assert "presses to the base" in result.plot("annulus_design").axes[-2].texts[-1].get_text()
 
 
 def test_history_and_progress():
@@ -132,8 +157,9 @@ def test_an_interrupted_run_keeps_its_rows():
 @pytest.mark.parametrize(
     ("changes", "message"),
     [
-        ({"ratios": (0.5, 0.1)}, "ratios must increase"),
-        ({"forces": (1.0, 3.5)}, "beyond the largest one of 3 N"),
+        ({"ratios": (0.5, 0.1)}, "ratios must increase: entry 2 is not above entry 1"),
+        ({"forces": (1.0, 3.5)}, "forces: 3.5 N is beyond the largest one of 3 N"),
+        ({"design_point": {"force": 1000.0}}, "design_point.force: 1 kN is beyond the largest one of 3 N"),
         ({"recommended_force": 4.0}, "beyond the largest one"),
         ({"thickness": 4e-3, "formula": "thesis_4_2_21"}, "for a half-space"),
         ({"ratios": (0.0, 0.5)}, "greater than 0"),

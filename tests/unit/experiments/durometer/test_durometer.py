@@ -44,6 +44,10 @@ def test_tissue_and_spring_balance_at_the_reading(hard):
     assert {name for step in hard.steps for name in step.values} <= set(hard.units)
 
 
+def test_what_is_left_out_of_a_real_durometer_is_said(hard):
+    assert any("recalled and not looked up; its presser foot" in text for text in hard.assumptions)
+
+
 def test_the_interval_is_that_of_another_spring(hard):
     quantities = values(hard)
     stronger = values(measured(scale={"force_at_zero": 0.203 + 0.00908}))

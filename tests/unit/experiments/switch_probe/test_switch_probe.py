@@ -152,8 +152,8 @@ def test_touches_made_before_a_stop_are_kept(monkeypatch, error, status):
     ("changes", "words"),
     [
         ({"rates": (0.0,)}, "greater than 0"),
-        ({"rates": (1e-3, 1e-3)}, "two rates are equal"),
-        ({"tissues": (tissue(), tissue())}, "the same name"),
+        ({"rates": (1e-3, 1e-3)}, "two rates are 1 mm/s"),
+        ({"tissues": (tissue(), tissue())}, "two tissues are named tissue"),
         ({"rates": (1e-6,)}, "sample more slowly"),
         ({"rates": (10.0,)}, "sample faster"),
         ({"depth": 6e-3}, "beyond the curve"),

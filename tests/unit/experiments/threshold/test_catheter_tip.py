@@ -71,6 +71,17 @@ def test_straddling_and_small_thresholds_are_reported():
     assert any("E27" in warning for warning in result.warnings)
 
 
+def test_a_tip_on_one_tissue_and_wrong_units_are_reported():
+    far = run(place=("11 m", "0 mm"))
+    assert any("every sensor stands on the atrium" in warning for warning in far.warnings)
+    assert not any("every sensor stands" in warning or "unit" in warning for warning in run().warnings)
+    tissues = [
+        {"name": name, "shear_modulus": modulus, "thickness": "3 mm"} for name, modulus in (("a", "20 GPa"), ("b", "20 kPa"))
+    ]
+    hard = run(surface={"tissues": tissues, "borders": ["13 mm"]})
+    assert any("tissue a has a shear modulus of 20 GPa" in warning for warning in hard.warnings)
+
+
 def test_a_threshold_from_a_simulation_replaces_that_of_the_closed_form():
     area = np.pi * (RING.outer_radius**2 - RING.inner_radius**2)
     closed, given = bands(10e3, 40e3, 5e3), bands(10e3, 40e3, 5e3, threshold_pressure=1e4)
@@ -169,8 +180,8 @@ def test_impossible_rings_are_refused(changes, words):
     ("changes", "words"),
     [
         ({"speed": 0.0}, "greater than 0"),
-        ({"press": 2.5e-3}, "lower press"),
-        ({"ring": SensorRing(recess=2.5e-3)}, "smaller than the thickness"),
+        ({"press": 2.5e-3}, "press 2.5 mm must be smaller than the thickness of the leaflet, 2 mm"),
+        ({"ring": SensorRing(recess=2.5e-3)}, "ring.recess 2.5 mm must be smaller than the thickness"),
         ({"tilt": 1.0}, "at most"),
         ({"tilt": "30.001 deg"}, "at most"),
         ({"lead": 1e4}, "shorten the lead"),

@@ -227,11 +227,11 @@ HEADER = "displacement [mm], plate force [N], tissue rise [mm], small sensor for
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("displacement [mm], plate force [N]\n0, 0\n1, 1\n", "no column 'tissue rise'"),
+        ("displacement [mm], plate force [N]\n0, 0\n1, 1\n", "no column tissue rise"),
         (HEADER + "0, 0, 0, 0\n1, 1, 0.4, 0\n2, 2, 0.8, 0\n", "go on past the touch"),
         (HEADER + "0, 0, 0, 1\n1, 1, 0.4, 2\n2, 2, 0.8, 3\n", "begin before"),
-        (HEADER + "0, 0, 0, 0\n1, -1, 0.4, 0\n2, 2, 0.8, 0\n3, 3, 0.8, 1\n", "negative"),
-        (HEADER + "0, 0, 0, 0\n2, 1, 0.4, 0\n1, 2, 0.8, 0\n3, 3, 0.8, 1\n", "increase"),
+        (HEADER + "0, 0, 0, 0\n1, -1, 0.4, 0\n2, 2, 0.8, 0\n3, 3, 0.8, 1\n", "plate force in row 2 is -1 N, negative"),
+        (HEADER + "0, 0, 0, 0\n2, 1, 0.4, 0\n1, 2, 0.8, 0\n3, 3, 0.8, 1\n", "displacement in row 3 is 1 mm after 2 mm"),
         (HEADER + "0, 0, 0, 0\n1, 1, 0.8, 0\n3, 3, 0.8, 1\n", "at least 3"),
         (HEADER + "0, 0, 0, 0\n1, 1, 0.4, 0\n2, 2, 0.7, 0\n3, 3, 0.8, 1\n", "risen by 700 µm .*the recess is 800 µm"),
         (HEADER + "0, 0, 0, nan\n", "finite number"),
@@ -240,7 +240,7 @@ HEADER = "displacement [mm], plate force [N], tissue rise [mm], small sensor for
 def test_bad_curves_are_refused(tmp_path, text, words):
     path = tmp_path / "curve.csv"
     path.write_text(text)
-    with pytest.raises(InvalidQuantity, match=words):
+    with pytest.raises(InvalidQuantity, match=f"curve.csv.*{words}"):
         run(source=CurveSource(path=str(path)))
 
 
@@ -275,6 +275,12 @@ def test_a_curve_is_read_with_its_units(tmp_path):
 def test_impossible_trials_are_refused(changes, words):
     with pytest.raises(CaseError, match=words):
         trial(**changes)
+
+
+def test_a_layer_too_thin_for_its_hole_and_recess_is_refused():
+    """The tissue rises by 0.228 of the displacement: 0.9 mm would take 3.9 mm of a layer of 3 mm."""
+    with pytest.raises(InvalidQuantity, match="base of the tissue, 3 mm thick, before it is touched; allowed: less than 684"):
+        run(source=LAYER.model_copy(update={"inner_radius": 0.3e-3, "recess": 0.9e-3}))
 
 
 def test_a_speed_that_takes_too_many_samples_is_refused():
