@@ -91,7 +91,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
         except YamlProblems as error:
             raise case_error(error.problems, lambda _, text=override: f"{option} {text}") from None  # type: ignore[misc]
         overridden[key_path] = f"{option} {override.partition('=')[0].strip()}"
-    return document, _place_in(path, overridden)
+    return document, place_in(path, overridden)
 
 
 def _read_file(path: Path) -> Document:
@@ -100,7 +100,7 @@ def _read_file(path: Path) -> Document:
     try:
         document = replace(read_yaml(text), folder=path.parent, first=_first_commands(text) if path.parent == CASES else "")
     except YamlProblems as error:
-        raise case_error(error.problems, _place_in(path, {})) from None
+        raise case_error(error.problems, place_in(path, {})) from None
     if not isinstance(document.value, dict):
         content = "is empty" if document.value is None else f"holds {as_written(document.value)}"
         raise CaseError(f"{one_line(path)}: the file {content}; a case is a mapping that begins with 'schema: {SCHEMA}'")
@@ -215,7 +215,7 @@ def _choices() -> str:
     return f"choices: {', '.join(experiment_kinds())}"
 
 
-def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
+def place_in(path: str | Path, overridden: Mapping[KeyPath, str]) -> Place:
     """Names the place of a problem: the override that set the value, such as ``--set experiment.recess``, or file and line."""
 
     def place(problem: Problem) -> str:

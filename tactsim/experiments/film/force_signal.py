@@ -11,8 +11,7 @@ import scipy
 from pydantic import Field, model_validator
 
 from tactsim.array import Array
-from tactsim.errors import InvalidQuantity
-from tactsim.identification.columns import read_columns
+from tactsim.identification.columns import of_file, read_columns
 from tactsim.mechanics.paths.loading import ForceLoading
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
@@ -150,11 +149,9 @@ class Record(FrozenModel):
     @cached_property
     def _columns(self) -> tuple[Array, Array]:
         columns = read_columns(self.path, {"time": "s", "force": "N"}, complete=True)
-        try:
+        with of_file(self.path):
             times = checked_times(columns["time"])
             return times - times[0], checked_forces(columns["force"], len(times), HOLM)
-        except InvalidQuantity as error:
-            raise InvalidQuantity(f"{self.path}: {error}") from None
 
 
 AnyForceSignal = Annotated[Chirp | Square | Pieces | Record, Field(discriminator="kind")]
