@@ -25,9 +25,9 @@ from tactsim.refusals import as_written, value_at
 from tactsim.shipped import CASES, case_path, shipped_name
 
 LONGEST_MESSAGE = 2000
-"""Characters of what is told of one fault: a list of all that is allowed in its place may be long."""
+"""Characters of the words for one fault: a list of all that is allowed in its place may be long."""
 MOST_PROBLEMS = 20
-"""Faults that are told; a file with more is of another kind, and the rest are counted."""
+"""Faults that are listed; a file with more is of another kind, and the rest are counted."""
 Place = Callable[[Problem], str]
 
 
@@ -238,7 +238,7 @@ def case_error(problems: Sequence[Problem], place: Place) -> CaseError:
     lines = []
     for problem in sorted(problems, key=lambda problem: problem.line)[: MOST_PROBLEMS + 1]:
         lines.append(in_words(replace(problem, message=one_line(problem.message, LONGEST_MESSAGE)), place))
-    told_once = list(dict.fromkeys(lines))
+    distinct = list(dict.fromkeys(lines))
     if len(problems) > MOST_PROBLEMS:
-        told_once = [*told_once[:MOST_PROBLEMS], f"and {len(problems) - MOST_PROBLEMS} more faults"]
-    return CaseError("\n".join(told_once))
+        distinct = [*distinct[:MOST_PROBLEMS], f"and {len(problems) - MOST_PROBLEMS} more faults"]
+    return CaseError("\n".join(distinct))

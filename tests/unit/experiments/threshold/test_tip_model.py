@@ -135,9 +135,7 @@ def pretended(monkeypatch, factors):
 def test_finite_elements_take_the_place_of_the_closed_form(usual, monkeypatch):
     pretended(monkeypatch, np.ones((4, 2)))
     same = CatheterTip(**EXAMPLE.__dict__ | {"model": FiniteElementTip()}).run()
-    np.testing.assert_allclose(
-        same.quantities["threshold_force"].numbers, usual.quantities["threshold_force"].numbers, rtol=1e-9
-    )
+    np.testing.assert_allclose(same.quantities["threshold_force"].numbers, usual.quantities["threshold_force"].numbers, rtol=1e-9)
     pretended(monkeypatch, [[1.1, 1], [1, 1], [1, 1], [1, 1]])
     changed = CatheterTip(**EXAMPLE.__dict__ | {"model": FiniteElementTip()}).run()
     ratio = changed.quantities["threshold_force"].numbers / same.quantities["threshold_force"].numbers
