@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.model import FrozenModel
-from tactsim.units import Time
+from tactsim.units import Positive, Time
 
 SHORTEST, LONGEST = 1e-12, 1e12
 """Relaxation times in s; beyond, nothing is measured and steps of time drown in round-off."""
@@ -36,7 +36,7 @@ class Relaxation(FrozenModel):
 
     fractions: Annotated[tuple[Annotated[float, Field(gt=0, lt=1)], ...], Field(min_length=1)]
     """Parts of the instantaneous modulus that relax; their sum is below 1."""
-    times: Annotated[tuple[Annotated[Time, Field(gt=0)], ...], Field(min_length=1)]
+    times: Annotated[tuple[Positive[Time], ...], Field(min_length=1)]
     """Relaxation time of each part."""
     constants: Literal["instantaneous", "equilibrium"] = "instantaneous"
     """Whether the constants of the material hold at once or after infinite time."""

@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
 import numpy as np
 import scipy
-from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.model import FrozenModel
-from tactsim.units import Force, Length
+from tactsim.units import Force, Length, Positive
 
 ASSUMED = (
     "durometer by its given dimensions, by default those of type OO of ASTM D2240, recalled and not looked up; its presser foot, "
@@ -32,11 +29,11 @@ class DurometerScale(FrozenModel):
     Source: type OO of ASTM D2240, recalled from the standard and not looked up: a declared assumption.
     """
 
-    travel: Annotated[Length, Field(gt=0)] = 2.5e-3
+    travel: Positive[Length] = 2.5e-3
     """Depth L at reading 0."""
-    force_at_zero: Annotated[Force, Field(gt=0)] = 0.203
+    force_at_zero: Positive[Force] = 0.203
     """Force F0 of the spring at reading 0."""
-    force_per_unit: Annotated[Force, Field(gt=0)] = 0.00908
+    force_per_unit: Positive[Force] = 0.00908
     """Growth k of the spring's force per unit of reading."""
 
     def depth(self, reading: float | Array) -> float | Array:

@@ -1,4 +1,4 @@
-"""The files and folders that a case names: found before anything is computed, told when they lie elsewhere."""
+"""The files and folders that a case names: found before anything is computed, reported when they lie elsewhere."""
 
 from __future__ import annotations
 

@@ -25,9 +25,9 @@ from tactsim.refusals import as_written, value_at
 from tactsim.shipped import CASES, case_path, shipped_name
 
 LONGEST_MESSAGE = 2000
-"""Characters of what is told of one fault: a list of all that is allowed in its place may be long."""
+"""Characters of the words for one fault: a list of all that is allowed in its place may be long."""
 MOST_PROBLEMS = 20
-"""Faults that are told; a file with more is of another kind, and the rest are counted."""
+"""Faults that are listed; a file with more is of another kind, and the rest are counted."""
 Place = Callable[[Problem], str]
 
 
@@ -91,7 +91,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
         except YamlProblems as error:
             raise case_error(error.problems, lambda _, text=override: f"{option} {text}") from None  # type: ignore[misc]
         overridden[key_path] = f"{option} {override.partition('=')[0].strip()}"
-    return document, _place_in(path, overridden)
+    return document, place_in(path, overridden)
 
 
 def _read_file(path: Path) -> Document:
@@ -100,7 +100,7 @@ def _read_file(path: Path) -> Document:
     try:
         document = replace(read_yaml(text), folder=path.parent, first=_first_commands(text) if path.parent == CASES else "")
     except YamlProblems as error:
-        raise case_error(error.problems, _place_in(path, {})) from None
+        raise case_error(error.problems, place_in(path, {})) from None
     if not isinstance(document.value, dict):
         content = "is empty" if document.value is None else f"holds {as_written(document.value)}"
         raise CaseError(f"{one_line(path)}: the file {content}; a case is a mapping that begins with 'schema: {SCHEMA}'")
@@ -215,7 +215,7 @@ def _choices() -> str:
     return f"choices: {', '.join(experiment_kinds())}"
 
 
-def _place_in(path: str | Path, overridden: dict[KeyPath, str]) -> Place:
+def place_in(path: str | Path, overridden: Mapping[KeyPath, str]) -> Place:
     """Names the place of a problem: the override that set the value, such as ``--set experiment.recess``, or file and line."""
 
     def place(problem: Problem) -> str:
@@ -238,7 +238,7 @@ def case_error(problems: Sequence[Problem], place: Place) -> CaseError:
     lines = []
     for problem in sorted(problems, key=lambda problem: problem.line)[: MOST_PROBLEMS + 1]:
         lines.append(in_words(replace(problem, message=one_line(problem.message, LONGEST_MESSAGE)), place))
-    told_once = list(dict.fromkeys(lines))
+    distinct = list(dict.fromkeys(lines))
     if len(problems) > MOST_PROBLEMS:
-        told_once = [*told_once[:MOST_PROBLEMS], f"and {len(problems) - MOST_PROBLEMS} more faults"]
-    return CaseError("\n".join(told_once))
+        distinct = [*distinct[:MOST_PROBLEMS], f"and {len(problems) - MOST_PROBLEMS} more faults"]
+    return CaseError("\n".join(distinct))

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.analytic.annular_area import annular_area
 from tactsim.array import Array
 from tactsim.contact.profile import Revolved, check_fillet, rounded_box
 from tactsim.interfaces.contact_shape import ContactShape
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, NonNegative, Positive, format_quantity
 
 
 class Annulus(Revolved):
@@ -26,13 +26,13 @@ class Annulus(Revolved):
     """
 
     kind: Literal["annulus"] = "annulus"
-    inner_radius: Annotated[Length, Field(gt=0)] = 1.5e-3
+    inner_radius: Positive[Length] = 1.5e-3
     """Radius of the hole."""
-    outer_radius: Annotated[Length, Field(gt=0)] = 3e-3
+    outer_radius: Positive[Length] = 3e-3
     """Outer radius of the ring."""
-    fillet: Annotated[Length, Field(ge=0)] = 0.2e-3
+    fillet: NonNegative[Length] = 0.2e-3
     """Radius of the rounding of both edges of the face; 0 is a sharp edge."""
-    height: Annotated[Length, Field(gt=0)] = 20e-3
+    height: Positive[Length] = 20e-3
     """Height of the walls."""
 
     @model_validator(mode="after")

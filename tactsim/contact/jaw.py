@@ -12,7 +12,7 @@ from tactsim.contact.profile import check_fillet, rounded_box
 from tactsim.contact.tilt import tilt_matrix
 from tactsim.interfaces import RigidBody
 from tactsim.interfaces.taxel_layout import OUTWARD, JawName
-from tactsim.units import Angle, Length
+from tactsim.units import Angle, Length, NonNegative, Positive
 
 
 class Jaw(RigidBody):
@@ -23,13 +23,13 @@ class Jaw(RigidBody):
 
     dimensions: ClassVar[tuple[int, ...]] = (3,)
     kind: Literal["jaw"] = "jaw"
-    width: Annotated[Length, Field(gt=0)] = 30e-3
+    width: Positive[Length] = 30e-3
     """Along x."""
-    depth: Annotated[Length, Field(gt=0)] = 30e-3
+    depth: Positive[Length] = 30e-3
     """Along y."""
-    thickness: Annotated[Length, Field(gt=0)] = 10e-3
+    thickness: Positive[Length] = 10e-3
     """Along z, away from the tissue."""
-    fillet: Annotated[Length, Field(ge=0)] = 1e-3
+    fillet: NonNegative[Length] = 1e-3
     """Radius of the edges."""
     side: JawName = "upper"
     """Whether the tissue is below or above the face."""

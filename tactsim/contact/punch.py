@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.array import Array
 from tactsim.contact.profile import Revolved, check_fillet, rounded_box
 from tactsim.interfaces.contact_shape import ContactShape
-from tactsim.units import Length
+from tactsim.units import Length, NonNegative, Positive
 
 
 class Punch(Revolved):
@@ -20,11 +20,11 @@ class Punch(Revolved):
     """
 
     kind: Literal["punch"] = "punch"
-    radius: Annotated[Length, Field(gt=0)] = 1.5e-3
+    radius: Positive[Length] = 1.5e-3
     """Radius of the disc."""
-    fillet: Annotated[Length, Field(ge=0)] = 0.0
+    fillet: NonNegative[Length] = 0.0
     """Radius of the rounding of the edge."""
-    height: Annotated[Length, Field(gt=0)] = 20e-3
+    height: Positive[Length] = 20e-3
     """Height of the wall."""
 
     @model_validator(mode="after")

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
-from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.contact.profile import Revolved
 from tactsim.interfaces.contact_shape import ContactShape, RoundTip
-from tactsim.units import Length
+from tactsim.units import Length, Positive
 
 
 class Rod(Revolved):
@@ -20,7 +19,7 @@ class Rod(Revolved):
     """
 
     kind: Literal["rod"] = "rod"
-    radius: Annotated[Length, Field(gt=0)] = 1.19e-3
+    radius: Positive[Length] = 1.19e-3
     """Radius of the rod and of its end."""
 
     @classmethod

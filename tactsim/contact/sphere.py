@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
-from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.interfaces import RigidBody
 from tactsim.interfaces.contact_shape import ContactShape, RoundTip
-from tactsim.units import Length
+from tactsim.units import Length, Positive
 
 
 class Sphere(RigidBody):
@@ -20,7 +19,7 @@ class Sphere(RigidBody):
     """
 
     kind: Literal["sphere"] = "sphere"
-    radius: Annotated[Length, Field(gt=0)] = 5e-3
+    radius: Positive[Length] = 5e-3
     """Radius of the sphere."""
 
     @classmethod

@@ -12,7 +12,7 @@ from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.spectrum import checked_number, read_only, real_array
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity, shown
-from tactsim.identification.columns import read_columns
+from tactsim.identification.columns import of_file, read_columns
 
 FEWEST_FREQUENCIES = 3
 THESIS_FREQUENCIES = (1.0, 6.0, 11.0, 16.0, 21.0, 26.0, 31.0, 36.0)
@@ -120,11 +120,9 @@ def read_dma(path: str | Path, relative_noise: ArrayLike | None = None) -> DmaDa
         allowed = ", or ".join(" and ".join(names) for names in PAIRS)
         raise InvalidQuantity(f"{path}: columns {', '.join(columns)}; allowed: frequency with {allowed}")
     first, second = (columns[name] for name in pair)
-    try:
+    with of_file(path):
         compliance = first - 1j * second if pair[0] == "elastic compliance" else 1 / _modulus(pair, first, second)
         return DmaData(columns["frequency"], compliance, None if relative_noise is None else np.array(relative_noise))
-    except InvalidQuantity as error:
-        raise InvalidQuantity(f"{path}: {error}") from None
 
 
 def _modulus(pair: tuple[str, str], first: Array, second: Array) -> Array:

@@ -11,10 +11,9 @@ from __future__ import annotations
 import hashlib
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self
 
 from numpy.typing import ArrayLike
-from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.interfaces.contact_shape import ContactShape
@@ -29,7 +28,7 @@ from tactsim.interfaces.table_functions import quantity as quantity
 from tactsim.kind import CaseKind, Kind
 from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result
-from tactsim.units import Area
+from tactsim.units import Area, Positive
 
 Drawing = Callable[..., bytes]
 """Draws one figure and returns it as PNG, or as the form (``png``, ``svg``, ``pdf``) that it is called with."""
@@ -182,7 +181,7 @@ class SensorFilm(CaseKind):
     """What electronics measure of it, increasing with the force."""
     unit: ClassVar[Literal["S", "F"]]
     """Unit of the signal."""
-    active_area: Annotated[Area, Field(gt=0)] | None = None
+    active_area: Positive[Area] | None = None
     """Area that carries the force; null is the area for which the film's numbers hold."""
 
     @property

@@ -87,7 +87,7 @@ class Runnable(CaseKind):
         return None
 
     def doubts(self) -> list[str]:
-        """What looks wrong in the case, such as a unit: told on a terminal before it is computed, and a warning of the result."""
+        """What looks wrong in the case, such as a unit: shown on a terminal before the run, and a warning of the result."""
         return []
 
     def vary(self, places: Mapping[str, Any]) -> Variation:

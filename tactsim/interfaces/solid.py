@@ -5,10 +5,8 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
-from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -18,7 +16,6 @@ Patch = Callable[[Array], tuple[Array, Array]]
 """A smooth piece of surface: for points (n, 3) in m their nearest points (n, 3) on it and its unit normals (n, 3) there."""
 Triangles = tuple[Array, Array]
 """Vertices (n, 3) in m and triangles (m, 3) of a closed surface, outward oriented."""
-Positive = Annotated[Length, Field(gt=0)]
 Point = tuple[Length, Length, Length]
 FACES = (("left", 0, 0), ("right", 0, 1), ("front", 1, 0), ("back", 1, 1), ("lower", 2, 0), ("upper", 2, 1))
 """Name, axis and end of every face of the block."""

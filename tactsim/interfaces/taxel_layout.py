@@ -9,14 +9,13 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.model import FrozenModel
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, Positive, format_quantity
 
 JawName = Literal["upper", "lower"]
 JAWS: tuple[str, ...] = get_args(JawName)
 """Names of the jaws of a grasp, in the order of the first axis of every array of forces or readings."""
 OUTWARD = {"upper": 1.0, "lower": -1.0}
 """Direction along z from the tissue to each jaw."""
-PositiveLength = Annotated[Length, Field(gt=0)]
 
 
 class TaxelLayout(FrozenModel):
@@ -36,9 +35,9 @@ class TaxelLayout(FrozenModel):
     """Number of taxels along y."""
     columns: Annotated[int, Field(ge=1, le=256)] = 3
     """Number of taxels along x."""
-    pitch: PositiveLength = 10e-3
+    pitch: Positive[Length] = 10e-3
     """Distance between the centres of neighbours."""
-    size: PositiveLength = 9e-3
+    size: Positive[Length] = 9e-3
     """Side of a taxel; the rest of the pitch is a gap."""
 
     @model_validator(mode="after")

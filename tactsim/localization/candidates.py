@@ -8,12 +8,12 @@ from typing import Annotated
 
 import numpy as np
 import scipy
-from pydantic import AfterValidator, Field
+from pydantic import AfterValidator
 
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.readings import TissueResponse
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, Positive, format_quantity
 
 LINE_STEP = 1e-3
 """Distance in m of the points on the centre line of a tube, and of parallel centre lines."""
@@ -36,7 +36,7 @@ def _ordered(limits: tuple[float, float]) -> tuple[float, float]:
     return limits
 
 
-RadiusLimits = Annotated[tuple[Annotated[Length, Field(gt=0)], Annotated[Length, Field(gt=0)]], AfterValidator(_ordered)]
+RadiusLimits = Annotated[tuple[Positive[Length], Positive[Length]], AfterValidator(_ordered)]
 """Pydantic type of the least and the largest radius of what is sought."""
 
 

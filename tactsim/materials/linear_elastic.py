@@ -11,7 +11,7 @@ from tactsim.array import Array
 from tactsim.interfaces import Material
 from tactsim.materials.kinematics import IDENTITY
 from tactsim.materials.moduli import check_moduli
-from tactsim.units import Pressure
+from tactsim.units import Positive, Pressure
 
 SYMMETRIC = (np.einsum("ik,JL->iJkL", IDENTITY, IDENTITY) + np.einsum("iL,kJ->iJkL", IDENTITY, IDENTITY)) / 2
 DEVIATORIC = SYMMETRIC - np.einsum("iJ,kL->iJkL", IDENTITY, IDENTITY) / 3
@@ -33,7 +33,7 @@ class LinearElastic(Material):
     compiled_form: ClassVar[Literal["invariants", "small_strain"] | None] = "small_strain"
     small_strain: ClassVar[bool] = True
     kind: Literal["linear_elastic"] = "linear_elastic"
-    youngs_modulus: Annotated[Pressure, Field(gt=0)]
+    youngs_modulus: Positive[Pressure]
     """Young's modulus E > 0."""
     poisson_ratio: Annotated[float, Field(gt=-1, le=0.5)]
     """Poisson's ratio in (-1, 0.5]; 0.5 is exactly incompressible."""

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from pydantic import Field
-
-from tactsim.units import Pressure
+from tactsim.units import Positive, Pressure
 
 LARGEST_BULK_TO_SHEAR_RATIO = 1e7
 """Assumption: beyond it p / K, of the order of G / K, drowns in the round-off of J - 1 after a solve."""
 
-BulkModulus = Annotated[Pressure, Field(gt=0)]
+BulkModulus = Positive[Pressure]
 """Bulk modulus in Pa."""
 
 

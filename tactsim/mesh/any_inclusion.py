@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Annotated
 
 import numpy as np
@@ -48,18 +49,28 @@ def check_inclusions(size: Array, inclusions: Sequence[Inclusion], gap: float) -
         body = inclusion.solids(size)[0]
         _check_extent(body, size, name)
         inclusion.check_in_block(size, gap, name)
-        solids.append(_Embedded(name, body, hollow=len(inclusion.solids(size)) > 1))
+        solids.append(_Embedded(name, body, size, hollow=len(inclusion.solids(size)) > 1))
     for first, second in itertools.combinations(solids, 2):
-        _check_apart(first, second, size, gap)
+        _check_apart(first, second, gap)
 
 
 @dataclass(frozen=True)
 class _Embedded:
-    """The outer body of an inclusion, with the inclusion's name and whether it is hollow."""
+    """The outer body of an inclusion in a block of a size, with the inclusion's name and whether it is hollow."""
 
     name: str
     body: Solid
+    size: Array
     hollow: bool
+
+    @cached_property
+    def samples(self) -> Array:
+        """Points (n, 3) on the surface of the body in the block."""
+        extent = float(np.ptp(self.body.bounds(), axis=0).max())
+        vertices, triangles = self.body.triangles(extent / SAMPLES_ACROSS)
+        points = np.vstack([vertices, vertices[triangles].mean(axis=1)])
+        within = ((points >= 0) & (points <= self.size)).all(axis=1)
+        return points[within] if within.any() else points
 
 
 def _check_extent(body: Solid, size: Array, name: str) -> None:
@@ -72,10 +83,10 @@ def _check_extent(body: Solid, size: Array, name: str) -> None:
         raise InvalidQuantity(f"{name} measures {large}; allowed: less than the block, {most}; is its unit right?")
 
 
-def _check_apart(first: _Embedded, second: _Embedded, size: Array, gap: float) -> None:
+def _check_apart(first: _Embedded, second: _Embedded, gap: float) -> None:
     """Refuse two bodies that are nearer than ``gap`` in m."""
     for one, other in ((first, second), (second, first)):
-        distance = one.body.signed_distance(_samples(other.body, size))
+        distance = one.body.signed_distance(other.samples)
         if distance.max() < 0:
             where = "beside" if one.hollow else "outside"
             raise InvalidQuantity(f"{other.name} lies inside {one.name}; allowed: inclusions {where} each other")
@@ -83,12 +94,3 @@ def _check_apart(first: _Embedded, second: _Embedded, size: Array, gap: float) -
             nearest, allowed = format_quantity(float(abs(distance.min())), "m"), format_quantity(gap, "m")
             how = f"overlap by {nearest}" if distance.min() < 0 else f"are {nearest} apart"
             raise InvalidQuantity(f"{one.name} and {other.name} {how}; allowed: at least {allowed} between inclusions")
-
-
-def _samples(body: Solid, size: Array) -> Array:
-    """Points (n, 3) on the surface of a body in the block."""
-    extent = float(np.ptp(body.bounds(), axis=0).max())
-    vertices, triangles = body.triangles(extent / SAMPLES_ACROSS)
-    points = np.vstack([vertices, vertices[triangles].mean(axis=1)])
-    within = ((points >= 0) & (points <= size)).all(axis=1)
-    return points[within] if within.any() else points

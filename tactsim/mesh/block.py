@@ -8,10 +8,9 @@ from typing import Annotated
 from pydantic import Field
 
 from tactsim.array import Array
-from tactsim.interfaces.solid import Positive
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.model import FrozenModel
-from tactsim.units import Time
+from tactsim.units import Length, Positive, Time
 
 VOLUME_TOLERANCE = 5e-3
 """Largest relative error of the volume of a region."""
@@ -26,19 +25,19 @@ SMALLEST_GAP = 0.3
 class BlockMeshSettings(FrozenModel):
     """Element sizes in a block with inclusions; the defaults give the default grasp about 40 000 unknowns."""
 
-    size: Positive = 3.3e-3
+    size: Positive[Length] = 3.3e-3
     """Edge length far from inclusions and jaw edges."""
-    inclusion_size: Positive = 2.6e-3
+    inclusion_size: Positive[Length] = 2.6e-3
     """Edge length at inclusions; a thin wall gets smaller ones by itself."""
-    edge_size: Positive | None = None
+    edge_size: Positive[Length] | None = None
     """Edge length at the edges of the jaws; null means two thirds of size."""
-    jaw: tuple[Positive, Positive] | None = None
+    jaw: tuple[Positive[Length], Positive[Length]] | None = None
     """Columns and rows of the jaws, centred on the block; null means jaws that cover the block."""
     growth: Annotated[float, Field(gt=0, le=2)] = 0.5
     """Growth of the edge length per distance."""
     stop_energy: Annotated[float, Field(ge=4, le=100)] = 10.0
     """Shape energy at which the mesher stops improving (3 is a regular tetrahedron)."""
-    time_limit: Annotated[Time, Field(gt=0)] = 300.0
+    time_limit: Positive[Time] = 300.0
     """Time after which the mesher is stopped."""
 
     @property

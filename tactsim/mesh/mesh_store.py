@@ -156,7 +156,7 @@ def _read(place: Path, size: Array, inclusions: Sequence[Inclusion], key: str) -
         block = assembled(mesh, surfaces, inclusions, key=key, **made)  # type: ignore[arg-type]
     except (*_DAMAGE, IndexError, ConvergenceError, InputError):
         return None
-    return block, content_hash(mesh)
+    return block, str(arrays["content"])
 
 
 def _kept(block: BlockMesh, place: Path) -> bool:

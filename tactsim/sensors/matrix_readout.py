@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated
 
 import numpy as np
-from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -14,6 +12,7 @@ from tactsim.interfaces import SensorFilm
 from tactsim.sensors.electronics.calibration import LinearCalibration
 from tactsim.sensors.electronics.channel_scatter import ChannelScatter
 from tactsim.sensors.electronics.force_electronics import ForceElectronics
+from tactsim.units import NonNegative
 
 MOST_NUMBERS = 2_000_000
 """Samples of all channels together that one reading may hold."""
@@ -46,7 +45,7 @@ class MatrixReadout(ForceElectronics):
 
     scatter: ChannelScatter | None = ChannelScatter()
     """How channels differ; null makes them equal."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Seed of the noise."""
 
     def line(self, area: float) -> LinearCalibration:

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.model import FrozenModel
-from tactsim.units import Force, Length, format_quantity
+from tactsim.units import Force, Length, NonNegative, Positive, format_quantity
 
 Formula = Literal["corrected", "as_printed"]
 MARGIN = 2.0
@@ -25,17 +25,17 @@ class SwitchArray(FrozenModel):
 
     count: Annotated[int, Field(ge=1, le=50)] = 5
     """Number of switches."""
-    pitch: Annotated[Length, Field(gt=0)] = 1e-3
+    pitch: Positive[Length] = 1e-3
     """Height between two switches along the probe's axis; switch i lies i times that above the face."""
-    strip: Annotated[Length, Field(gt=0)] = 0.2e-3
+    strip: Positive[Length] = 0.2e-3
     """Height that a switch covers, centred on its own; not printed."""
-    touch_threshold: Annotated[Force, Field(ge=0)] = 0.0
+    touch_threshold: NonNegative[Force] = 0.0
     """A touch begins with the first sample whose force is above; zero in the thesis."""
-    release_threshold: Annotated[Force, Field(ge=0)] | None = None
+    release_threshold: NonNegative[Force] | None = None
     """It ends with the first sample whose force is not above this; by default half the threshold of the touch."""
-    switch_threshold: Annotated[Force, Field(ge=0)] = 0.0
+    switch_threshold: NonNegative[Force] = 0.0
     """A switch counts as closed above this force on it."""
-    fall: Annotated[Force, Field(ge=0)] = 0.0
+    fall: NonNegative[Force] = 0.0
     """How far the force may be below its largest of the touch and still count as loading."""
     formula: Formula = "corrected"
     """Mean rate by the sum of the intervals (E11), or by the sum of the times as eq. 5.2.2 prints."""

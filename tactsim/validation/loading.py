@@ -11,8 +11,8 @@ from typing import TypeVar
 from pydantic import BaseModel, ValidationError
 
 from tactsim.case.explaining import problems_of
-from tactsim.case.loading import read_case_text
-from tactsim.case.yaml_reading import Problem, YamlProblems, read_yaml
+from tactsim.case.loading import case_error, place_in, read_case_text
+from tactsim.case.yaml_reading import YamlProblems, read_yaml
 from tactsim.errors import CaseError, UnknownName
 from tactsim.validation.comparison import figures_of
 from tactsim.validation.table import Manifest, Table, table_class
@@ -104,13 +104,13 @@ def read_model(path: Path, model: type[Model]) -> Model:
     try:
         document = read_yaml(text)
     except YamlProblems as error:
-        raise _error(path, error.problems) from None
+        raise case_error(error.problems, place_in(path, {})) from None
     if not isinstance(document.value, dict):
         raise CaseError(f"{path}: the file holds no mapping")
     try:
         return model.model_validate_json(json.dumps(document.value), context={"units": "required"})
     except ValidationError as error:
-        raise _error(path, problems_of(error, document, model)) from None
+        raise case_error(problems_of(error, document, model), place_in(path, {})) from None
 
 
 def _faults(name: str, table: Table | None, manifest: Manifest) -> list[str]:
@@ -139,11 +139,3 @@ def _number_faults(tables: Mapping[str, Table], manifest: Manifest, *, whole: bo
     unknown = [f"{named[number]}: {number} is no number of the manifest" for number in sorted(set(named) - set(manifest.numbers))]
     without = sorted(set(manifest.numbers) - set(named)) if whole else []
     return unknown + [f"{number}: no row names it: {manifest.numbers[number]}" for number in without]
-
-
-def _error(path: Path, problems: Sequence[Problem]) -> CaseError:
-    lines = [
-        ": ".join(part for part in (f"{path}:{problem.line}", ".".join(map(str, problem.path)), problem.message) if part)
-        for problem in sorted(problems, key=lambda problem: problem.line)
-    ]
-    return CaseError("\n".join(dict.fromkeys(lines)))

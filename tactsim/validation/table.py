@@ -63,7 +63,7 @@ class Row(FrozenModel):
 
     @property
     def shown_unit(self) -> str:
-        """The unit in which the row is told: that of what is expected, else that of its limit, else SI."""
+        """The unit in which the row is shown: that of what is expected, else that of its limit, else SI."""
         limit = (self.ends.above if self.ends.above is not None else self.ends.below) if isinstance(self.ends, Bound) else None
         given = self.expected if isinstance(self.expected, str) else limit
         return given.strip().partition(" ")[2].strip() if isinstance(given, str) else self.unit

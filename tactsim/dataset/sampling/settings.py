@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.experiments.recording import RecordingSettings
 from tactsim.model import FrozenModel
-from tactsim.units import Time
+from tactsim.units import NonNegative, Positive, Time
 
 SCHEMA = "tactsim/sweep/1"
 NO_SPLIT = "none"
@@ -76,7 +76,7 @@ class SweepSettings(RecordingSettings):
     """How the varied places are covered."""
     samples: Annotated[int, Field(ge=1, le=MOST_SAMPLES)] | None = None
     """Number of samples; of a grid it follows from the places."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Sample k depends on the seed and on k only."""
     samples_per_specimen: Annotated[int, Field(ge=1, le=10_000)] = 1
     """Samples that share a specimen; of a grid it follows from the places."""
@@ -84,7 +84,7 @@ class SweepSettings(RecordingSettings):
     """Key paths that are drawn anew for each sample of a specimen, such as experiment.loading.pieces.0.to."""
     redraws: Annotated[int, Field(ge=0, le=100_000)] = 100
     """How often a specimen is drawn again because its case was refused, before its samples are marked failed."""
-    time_limit: Annotated[Time, Field(gt=0)] | None = None
+    time_limit: Positive[Time] | None = None
     """Longest time that solving a sample may take, before it is marked failed; null allows any. It depends on the machine."""
     splits: Splits = Splits()
     """Parts of the data set."""

@@ -1,6 +1,6 @@
 """The Zarr store of a data set as it is read: opened, checked against limits, and each array whole or refused by name.
 
-A Zarr group (format 3) with one array per variable; the first dimension is the sample. ``store_writing`` creates and fills it.
+A Zarr group (format 3) with one array per variable; the first dimension is the sample. ``store.writing`` creates and fills it.
 """
 
 from __future__ import annotations

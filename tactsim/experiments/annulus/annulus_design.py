@@ -56,7 +56,7 @@ class AnnulusDesign(Experiment):
     """Depths L of the small sensor below the face, increasing."""
     forces: Annotated[tuple[Positive[Force], ...], Field(min_length=1)]
     """Constant forces, increasing, up to the largest one."""
-    times: Annotated[tuple[Annotated[Time, Field(gt=0)], ...], Field(min_length=1)]
+    times: Annotated[tuple[Positive[Time], ...], Field(min_length=1)]
     """Times since the force began, increasing."""
     recommended_force: Positive[Force] = 2.0
     """Force on heart tissue that should not be exceeded, thesis section 4.7."""

@@ -19,7 +19,7 @@ from tactsim.mechanics.outcome.success import within_layer
 from tactsim.mechanics.paths.loading import AnyLoading, ForceLoading
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import rows
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, NonNegative, Positive, format_quantity
 
 DECADES, PER_DECADE = 6, 10
 """Sampled times after the beginning of each piece: so many decades before its end, with so many times each."""
@@ -61,11 +61,11 @@ class ClosedForm(Experiment):
     kind: Literal["closed_form"] = "closed_form"
     material: AnyMaterial
     """Tissue; its small-strain shear relaxation counts; incompressible."""
-    inner_radius: Annotated[Length, Field(ge=0)] = 1.5e-3
+    inner_radius: NonNegative[Length] = 1.5e-3
     """Inner radius; 0 is a solid punch."""
-    outer_radius: Annotated[Length, Field(gt=0)] = 3e-3
+    outer_radius: Positive[Length] = 3e-3
     """Outer radius."""
-    thickness: Annotated[Length, Field(gt=0)] | None = None
+    thickness: Positive[Length] | None = None
     """Thickness of the layer of tissue; null is a half-space."""
     base: Literal["bonded", "slipping"] = "bonded"
     """Base of the layer."""

@@ -24,7 +24,7 @@ class DesignPoint(FrozenModel):
     """Depth L of the small sensor."""
     force: Positive[Force] = 1.0
     """Constant force."""
-    time: Annotated[Time, Field(gt=0)] = 0.5
+    time: Positive[Time] = 0.5
     """Time since the force began."""
 
 

@@ -8,7 +8,7 @@ from typing import Annotated, ClassVar, Literal
 from pydantic import Field
 
 from tactsim.model import FrozenModel
-from tactsim.units import Length, Time, format_quantity
+from tactsim.units import Length, NonNegative, Time, format_quantity
 
 CARTESIAN = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 AXISYMMETRIC = {"rr": (0, 0), "radial": (0, 0), "zz": (1, 1), "rz": (0, 1), "hoop": (2, 2)}
@@ -19,7 +19,7 @@ StressComponent = Literal["xx", "yy", "zz", "xy", "yz", "xz", "rr", "rz", "radia
 class Asked(FrozenModel):
     """A number that is asked for: recorded at every step, reported at one time."""
 
-    time: Annotated[Time, Field(ge=0)] | None = None
+    time: NonNegative[Time] | None = None
     """When; by default at the end."""
     factor: float = 1.0
     """What the number is multiplied by, such as 4 for the force on a quarter of a body."""

@@ -13,7 +13,7 @@ from tactsim.mesh.affordable import PER_TETRAHEDRON, check_unknowns
 from tactsim.mesh.graded.mapped import Domain, grid_domain, polar, quarter_disc, spaced
 from tactsim.mesh.revolved import SweepSymmetry, swept
 from tactsim.model import FrozenModel
-from tactsim.units import Length
+from tactsim.units import Length, NonNegative, Positive
 
 Dimension = Literal["3d", "plane_strain", "axisymmetric"]
 AXES: dict[str, tuple[str, ...]] = {"3d": ("x", "y", "z"), "plane_strain": ("x", "y"), "axisymmetric": ("r", "z")}
@@ -31,7 +31,7 @@ Part = Literal["whole", "half", "quarter"]
 class Span(FrozenModel):
     """Cells one after the other along a coordinate."""
 
-    length: Annotated[Length, Field(gt=0)]
+    length: Positive[Length]
     """Length of all of them together."""
     cells: Count
     """Their number."""
@@ -142,7 +142,7 @@ class RoundGeometry(Geometry):
 
     radial: Spans
     """Cells along the radius, from the inside out."""
-    inner_radius: Annotated[Length, Field(ge=0)] = 0.0
+    inner_radius: NonNegative[Length] = 0.0
     """Radius of the hole; 0 without one."""
     around: Annotated[int, Field(ge=2, le=1000)] = 8
     """Cells around a quarter of a circle, of a ring or a sweep; a section without a hole has twice those of its radius."""

@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.experiments.dma.report import HISTORY_UNITS, DmaFinding, DmaReport
-from tactsim.experiments.dma.source import MeasuredDma, Seed, SignalsDma, SyntheticDma, SyntheticSignals
+from tactsim.experiments.dma.source import MeasuredDma, SignalsDma, SyntheticDma, SyntheticSignals
 from tactsim.identification.dma_bands import genetic_band, least_squares_band
 from tactsim.identification.dma_data import DmaData
 from tactsim.identification.dma_determined import determination
@@ -18,6 +18,7 @@ from tactsim.identification.dma_least_squares import fit_least_squares
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, timed
 from tactsim.results.result import StepRecord
+from tactsim.units import NonNegative
 
 CURVE_POINTS = 50
 """Frequencies of the curves, evenly spaced in the logarithm, beside those of the data."""
@@ -52,7 +53,7 @@ class DmaIdentification(Experiment):
     """Individuals of the genetic algorithm."""
     generations: Annotated[int, Field(ge=2, le=100_000)] = 1000
     """Generations of the genetic algorithm."""
-    seed: Seed = 1
+    seed: NonNegative[int] = 1
     """Seed of the genetic algorithm and of the bootstrap."""
 
     history_units: ClassVar[dict[str, str]] = HISTORY_UNITS

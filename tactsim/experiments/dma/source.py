@@ -24,9 +24,7 @@ from tactsim.identification.dma_signals import (
 from tactsim.identification.dma_synthetic_signals import DmaMachine, synthetic_signals
 from tactsim.model import FrozenModel, check_increasing
 from tactsim.outside.input_path import InputPath
-from tactsim.units import Area, Force, Frequency, Length, Positive, Time, format_quantity
-
-Seed = Annotated[int, Field(ge=0)]
+from tactsim.units import Area, Force, Frequency, Length, NonNegative, Positive, Time, format_quantity
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,7 +95,7 @@ class SyntheticDma(ModelledDma):
     kind: Literal["synthetic"] = "synthetic"
     noise: Annotated[float, Field(ge=0, le=0.2)] = 0.02
     """Relative standard deviation of the independent Gaussian noise of each elastic and viscous compliance."""
-    seed: Seed = 1
+    seed: NonNegative[int] = 1
     """Seed of the noise."""
 
     def measured(self) -> DmaData:
@@ -127,25 +125,25 @@ class SyntheticSignals(ModelledDma):
     """
 
     kind: Literal["synthetic_signals"] = "synthetic_signals"
-    area: Annotated[Area, Field(gt=0)] = 100e-6
+    area: Positive[Area] = 100e-6
     """Rest area of the specimen's cross-section."""
-    height: Annotated[Length, Field(gt=0)] = 5e-3
+    height: Positive[Length] = 5e-3
     """Rest height of the specimen."""
-    mean_load: Annotated[Force, Field(gt=0)] = 5e-3
+    mean_load: Positive[Force] = 5e-3
     """Mean of the load."""
-    amplitude: Annotated[Force, Field(gt=0)] = 2.5e-3
+    amplitude: Positive[Force] = 2.5e-3
     """Amplitude of the load."""
     cycles: Annotated[float, Field(ge=1, le=10_000)] = 20.0
     """Cycles that are recorded at each frequency, whole or not."""
     samples_per_cycle: Annotated[int, Field(ge=4, le=10_000)] = 50
     """Samples of a cycle."""
-    hold: Annotated[Time, Field(ge=0)] | None = None
+    hold: NonNegative[Time] | None = None
     """Time for which the mean load is held from rest before it oscillates; null records the steady state, free of transients."""
     precycles: Annotated[float, Field(ge=0, le=100_000)] = 10.0
     """Cycles before the record, in which the specimen settles; only with ``hold``."""
     noise: Annotated[float, Field(ge=0, le=0.5)] = 0.02
     """Standard deviation of the noise of each sample of load and of displacement over the amplitude of its oscillation."""
-    seed: Seed = 1
+    seed: NonNegative[int] = 1
     """Seed of the noise."""
 
     @model_validator(mode="after")
@@ -181,7 +179,7 @@ class SignalsTest(FrozenModel):
 
     path: InputPath
     """CSV file, beside the case or in the working folder; header such as ``time [s], load [N], displacement [mm]``."""
-    frequency: Annotated[Frequency, Field(gt=0)]
+    frequency: Positive[Frequency]
     """Test frequency."""
 
 
@@ -194,9 +192,9 @@ class SignalsDma(DmaSource):
     path: InputPath | None = None
     """One CSV file of all tests, beside the case or in the working folder; header such as
     ``frequency [Hz], time [s], load [N], displacement [mm]``."""
-    area: Annotated[Area, Field(gt=0)]
+    area: Positive[Area]
     """Rest area of the specimen's cross-section."""
-    height: Annotated[Length, Field(gt=0)]
+    height: Positive[Length]
     """Rest height of the specimen."""
     refine: bool = False
     """Whether each frequency is first made to fit its signals best."""

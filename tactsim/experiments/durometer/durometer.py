@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.any_law import AnyLaw
@@ -20,7 +20,7 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
 from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
 from tactsim.mechanics.models.specimen import Specimen
-from tactsim.units import Force, Length, format_quantity
+from tactsim.units import Force, Length, NonNegative, Positive, format_quantity
 
 if TYPE_CHECKING:
     from tactsim.experiments.indentation.course import Adapted, DisplacementPath
@@ -49,11 +49,11 @@ class Durometer(Experiment):
     """The indentor; 2.38 mm in diameter for type OO."""
     scale: DurometerScale = DurometerScale()
     """Travel and spring; type OO."""
-    spring_tolerance: Annotated[Force, Field(ge=0)] = 0.00908
+    spring_tolerance: NonNegative[Force] = 0.00908
     """Uncertainty of the spring's force, which makes the interval of the reading; by default one unit of type OO."""
     stop: Literal["reading", "travel"] = "reading"
     """Whether the run ends at the reading, or goes on over the whole travel."""
-    penetration_tolerance: Annotated[Length, Field(gt=0)] | None = None
+    penetration_tolerance: Positive[Length] | None = None
     """Largest penetration at any surface quadrature point; by default 1e-3 of the indentor's radius, 0.05 units of type OO.
     At most a tenth of that radius, of the travel and of the thinnest layer."""
     mesh: MeshSettings = MeshSettings(growth=0.8, adaptive=False)

@@ -100,7 +100,7 @@ class AtriumTest(FrozenModel):
 
     reading: Reading = 25.0
     """Shore reading, thesis 3.2."""
-    times: Annotated[tuple[Annotated[Time, Field(gt=0)], ...], Field(min_length=1)] = (1e-3, 10e-3, 0.1, 1.0, 10.0)
+    times: Annotated[tuple[Positive[Time], ...], Field(min_length=1)] = (1e-3, 10e-3, 0.1, 1.0, 10.0)
     """Times after the load at which the creep modulus 1/D(t) is taken."""
     shape: str | None = None
     """Shape of energy of the tissue; by default the last one."""

@@ -88,7 +88,7 @@ class RankingReport:
     def add(self, finding: ShapeFinding) -> Iterator[StepRecord]:
         """One step for every elastomer with this shape, numbered from 1; a value that cannot be had is absent.
 
-        All are kept before the first is told, so that an interruption leaves no half of a shape.
+        All are kept before the first is yielded, so that an interruption leaves no half of a shape.
         """
         self._finished.append(finding)
         before = len(self._steps)
@@ -187,21 +187,13 @@ class RankingReport:
         quantities |= {name: Quantity([self._column(s, name) for s in shapes], *words) for name, words in columns.items()}
         words = "predicted minus printed reading [shape, elastomer]"
         quantities["reading_difference"] = Quantity(differences, "1", words)
-        at_own_modulus = [self._own(shape) for shape in shapes]
-        for name, unit, words in (
-            ("own_threshold_pressure", "Pa", "threshold pressure by the constants of each [shape]"),
-            ("own_reading", "1", "reading by the constants of each [shape]; 0 is off the scale"),
-        ):
-            quantities[name] = Quantity([pair[name] for pair in at_own_modulus], unit, words)
+        pressures = [one.threshold_pressure for one in self._finished]
+        readings = [one.reading(one.youngs_modulus, self._scale) for one in self._finished]
+        words = "threshold pressure by the constants of each [shape]"
+        quantities["own_threshold_pressure"] = Quantity(pressures, "Pa", words)
+        words = "reading by the constants of each [shape]; 0 is off the scale"
+        quantities["own_reading"] = Quantity(readings, "1", words)
         return quantities | self._atrium
-
-    def _own(self, shape: int) -> dict[str, float | None]:
-        """Threshold pressure in Pa and reading of a shape at the modulus it was given."""
-        finding = self._finished[shape]
-        return {
-            "own_threshold_pressure": finding.threshold_pressure,
-            "own_reading": finding.reading(finding.youngs_modulus, self._scale),
-        }
 
     def _warnings(self) -> list[str]:
         warnings = [f"{one.shape.name}: the durometer ended early, {one.cut_short}" for one in self._finished if one.cut_short]

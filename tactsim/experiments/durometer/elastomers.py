@@ -10,7 +10,7 @@ from tactsim.materials import AnyMaterial
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.model import FrozenModel
-from tactsim.units import Pressure
+from tactsim.units import Positive, Pressure
 
 Reading = Annotated[float, Field(ge=0, lt=100)]
 
@@ -24,7 +24,7 @@ class Elastomer(FrozenModel):
     """Shore reading."""
     hand: float
     """Rank by hand, larger for harder."""
-    threshold_pressure: Annotated[Pressure, Field(gt=0)]
+    threshold_pressure: Positive[Pressure]
     """Threshold pressure of the annular sensor."""
 
 

@@ -19,7 +19,7 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.sensors.electronics.signal_chain import SignalChain
-from tactsim.units import Force, format_quantity
+from tactsim.units import Force, Positive, format_quantity
 
 FOLLOWING = 3.0
 """Standard deviations of the residuals' correlation with their neighbours in force from which they are said to follow a curve."""
@@ -40,7 +40,7 @@ class ForceCalibration(Experiment):
     """Supply and load resistor of the divider, range of the converter; synthetic readings pass through all of it."""
     confidence: Annotated[float, Field(ge=0.5, le=0.999)] = 0.95
     """Of the intervals and of the band."""
-    full_scale: Annotated[Force, Field(gt=0)] | None = None
+    full_scale: Positive[Force] | None = None
     """Force that the linearity refers to; null is the largest force applied."""
 
     history_units: ClassVar[dict[str, str]] = {

@@ -27,9 +27,8 @@ from tactsim.results.result import StepRecord
 from tactsim.sensors.films.composite import CREEP_COEFFICIENTS
 from tactsim.sensors.films.composite_library import AnyComposite, named_composite
 from tactsim.sensors.response_errors import root_mean_square
-from tactsim.units import Area, Force, Time
+from tactsim.units import Area, Force, NonNegative, Positive, Time
 
-PositiveForce = Annotated[Force, Field(gt=0)]
 MOST_DRAWN = 400
 """Samples of a test that its figure shows."""
 UNITS = {"instantaneous": "Pa", "delayed": "Pa", "viscosity": "Pa*s"}
@@ -41,15 +40,15 @@ class SyntheticCreep(FrozenModel):
     kind: Literal["synthetic"] = "synthetic"
     composite: AnyComposite = named_composite("lingstat_literal")
     """Name of a shipped composite, or its numbers."""
-    forces: Annotated[tuple[PositiveForce, ...], Field(min_length=3)] = (2.0, 4.0, 6.0, 8.0)
+    forces: Annotated[tuple[Positive[Force], ...], Field(min_length=3)] = (2.0, 4.0, 6.0, 8.0)
     """Forces of the tests; by default those of the thesis."""
-    duration: Annotated[Time, Field(gt=0)] = 30.0
+    duration: Positive[Time] = 30.0
     """Length of each test."""
     samples: Annotated[int, Field(ge=6, le=1_000_000)] = 300
     """Number of samples of each test."""
     noise: Annotated[float, Field(ge=0, le=0.2)] = 0.002
     """Standard deviation of the strain over the last strain of the test."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Seed of the noise."""
 
     @property
@@ -70,7 +69,7 @@ class MeasuredCreep(FrozenModel):
     kind: Literal["file"] = "file"
     path: InputPath
     """CSV file, beside the case or in the working folder, with the columns ``time [s], force [N], strain [1]``."""
-    area: Annotated[Area, Field(gt=0)]
+    area: Positive[Area]
     """Area of the sample that carries the force."""
 
     def tests(self) -> list[CreepTest]:

@@ -15,7 +15,7 @@ from tactsim.outside.input_path import InputPath
 from tactsim.sensors.electronics.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.electronics.channel_scatter import ChannelScatter
 from tactsim.sensors.electronics.signal_chain import SignalChain
-from tactsim.units import Force, Time
+from tactsim.units import Force, NonNegative, Time
 
 Readings = tuple[Array, Array, Array]
 """Forces in N of shape (points,), voltages in V and whether each is saturated, of shape (points, sensors)."""
@@ -34,13 +34,13 @@ class SyntheticCalibration(FrozenModel):
     """Number of sensors, each with its channel; 18 in thesis section 6.2."""
     scatter: ChannelScatter | None = None
     """How the sensors' conductances differ from the line; null is not at all."""
-    forces: Annotated[tuple[Annotated[Force, Field(ge=0)], ...], Field(min_length=1)] = tuple(map(float, range(26)))
+    forces: Annotated[tuple[NonNegative[Force], ...], Field(min_length=1)] = tuple(map(float, range(26)))
     """Forces applied; by default 0 to 25 N, the range of thesis section 3.1.2, in steps of 1 N (an assumption)."""
     repeats: Annotated[int, Field(ge=1, le=1000)] = 2
     """How often the forces are applied, one after the other."""
     hold: Annotated[Time, Field(gt=0, le=100)] = 1.0
     """How long each force is held; its last sample is read, one second after its application in thesis section 2.2.1."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Seed of the chain's noise."""
 
     def truth(self) -> tuple[Array, Array]:

@@ -11,28 +11,23 @@ import scipy
 from pydantic import Field, model_validator
 
 from tactsim.array import Array
-from tactsim.errors import InvalidQuantity
-from tactsim.identification.columns import read_columns
+from tactsim.identification.columns import of_file, read_columns
 from tactsim.mechanics.paths.loading import ForceLoading
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.sensors.films.film import HOLM
 from tactsim.sensors.films.force_history import checked_forces, checked_times
-from tactsim.units import Force, Frequency, Time, format_quantity
-
-PositiveTime = Annotated[Time, Field(gt=0)]
-PositiveFrequency = Annotated[Frequency, Field(gt=0)]
-SensorForce = Annotated[Force, Field(ge=0)]
+from tactsim.units import Force, Frequency, NonNegative, Positive, Time, format_quantity
 
 
 class Wave(FrozenModel):
     """A force between two bounds."""
 
-    low: SensorForce
+    low: NonNegative[Force]
     """Smallest force."""
-    high: SensorForce
+    high: NonNegative[Force]
     """Largest force."""
-    duration: PositiveTime
+    duration: Positive[Time]
     """Length."""
 
     @model_validator(mode="after")
@@ -63,15 +58,15 @@ class Chirp(Wave):
     """
 
     kind: Literal["chirp"]
-    low: SensorForce = 0.1
+    low: NonNegative[Force] = 0.1
     """Smallest force."""
-    high: SensorForce = 2.6
+    high: NonNegative[Force] = 2.6
     """Largest force."""
-    start_frequency: PositiveFrequency = 0.2
+    start_frequency: Positive[Frequency] = 0.2
     """Frequency at the beginning."""
-    end_frequency: PositiveFrequency = 2.0
+    end_frequency: Positive[Frequency] = 2.0
     """Frequency at the end."""
-    duration: PositiveTime = 20.0
+    duration: Positive[Time] = 20.0
     """Length."""
 
     @property
@@ -91,15 +86,15 @@ class Square(Wave):
     """
 
     kind: Literal["square"]
-    low: SensorForce = 0.1
+    low: NonNegative[Force] = 0.1
     """Smallest force."""
-    high: SensorForce = 2.5
+    high: NonNegative[Force] = 2.5
     """Largest force."""
-    frequency: PositiveFrequency = 1.0
+    frequency: Positive[Frequency] = 1.0
     """Frequency."""
-    increment: Annotated[Force, Field(gt=0)] | None = None
+    increment: Positive[Force] | None = None
     """Growth of the upper force with each period; null jumps between the bounds at once."""
-    duration: PositiveTime = 24.0
+    duration: Positive[Time] = 24.0
     """Length."""
 
     @property
@@ -154,11 +149,9 @@ class Record(FrozenModel):
     @cached_property
     def _columns(self) -> tuple[Array, Array]:
         columns = read_columns(self.path, {"time": "s", "force": "N"}, complete=True)
-        try:
+        with of_file(self.path):
             times = checked_times(columns["time"])
             return times - times[0], checked_forces(columns["force"], len(times), HOLM)
-        except InvalidQuantity as error:
-            raise InvalidQuantity(f"{self.path}: {error}") from None
 
 
 AnyForceSignal = Annotated[Chirp | Square | Pieces | Record, Field(discriminator="kind")]

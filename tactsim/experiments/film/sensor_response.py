@@ -20,7 +20,7 @@ from tactsim.sensors.electronics.signal_chain import Recording, SignalChain
 from tactsim.sensors.films.any_film import ConductingFilm
 from tactsim.sensors.films.film import Film
 from tactsim.sensors.response_errors import hysteresis, range_errors, root_mean_square
-from tactsim.units import Force, format_quantity
+from tactsim.units import Force, NonNegative, format_quantity
 
 MOST_SAMPLES = 100_000
 """Longest recording, in samples: the inverse of the film takes about a minute for it."""
@@ -41,9 +41,9 @@ class SensorResponse(Experiment):
     """What turns conductance into samples."""
     calibration: AnyCalibration = THESIS_LINE
     """What turns conductance back into force; by default F = 20.94 C - 0.132."""
-    ranges: Annotated[tuple[Annotated[Force, Field(ge=0)], ...], Field(min_length=2)] = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0, 25.0)
+    ranges: Annotated[tuple[NonNegative[Force], ...], Field(min_length=2)] = (0.0, 0.5, 1.0, 2.0, 5.0, 10.0, 25.0)
     """Borders of the ranges of force for which the error is reported, increasing."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Seed of the noise."""
 
     history_units: ClassVar[dict[str, str]] = {

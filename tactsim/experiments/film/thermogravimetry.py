@@ -14,7 +14,7 @@ from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.sensors.films.thermogravimetry import Thermogravimetry
 from tactsim.sensors.films.tunnelling import particle_separation, tunnelling_decay
-from tactsim.units import Density, Energy, Length, Mass, format_quantity
+from tactsim.units import Density, Energy, Length, Mass, NonNegative, Positive, format_quantity
 
 STEP = 1e-6
 """Relative step of the difference quotient of the separation."""
@@ -25,9 +25,9 @@ class FillerDensity(FrozenModel):
 
     name: Annotated[str, Field(min_length=1, max_length=40)]
     """Name in the figure and the quantities."""
-    density: Annotated[Density, Field(gt=0)]
+    density: Positive[Density]
     """Density."""
-    deviation: Annotated[Density, Field(ge=0)] = 0.0
+    deviation: NonNegative[Density] = 0.0
     """Standard uncertainty."""
 
 
@@ -44,21 +44,21 @@ class ThermogravimetricAnalysis(Experiment):
     """
 
     kind: Literal["thermogravimetry"] = "thermogravimetry"
-    sample_mass: Annotated[Mass, Field(gt=0)]
+    sample_mass: Positive[Mass]
     """Mass of the sample before the analysis."""
-    filler_mass: Annotated[Mass, Field(gt=0)]
+    filler_mass: Positive[Mass]
     """Mass of what remains."""
-    mass_resolution: Annotated[Mass, Field(ge=0)] = 1e-10
+    mass_resolution: NonNegative[Mass] = 1e-10
     """Last digit of the balance."""
-    matrix_density: Annotated[Density, Field(gt=0)] = 910.0
+    matrix_density: Positive[Density] = 910.0
     """Density of the matrix."""
-    matrix_density_deviation: Annotated[Density, Field(ge=0)] = 0.5 / 3**0.5
+    matrix_density_deviation: NonNegative[Density] = 0.5 / 3**0.5
     """Standard uncertainty of the density of the matrix; by default that of 0.910 g/cm^3 printed to three digits."""
     filler_densities: Annotated[tuple[FillerDensity, ...], Field(min_length=1, max_length=20)] = (BULK, SOLID)
     """Readings of the density of the filler: the thesis divides by that of the loose powder, particles have that of the solid."""
-    particle_diameter: Annotated[Length, Field(gt=0)] = 500e-9
+    particle_diameter: Positive[Length] = 500e-9
     """Of the filler."""
-    barrier: Annotated[Energy, Field(gt=0)] = 8.01088317e-21
+    barrier: Positive[Energy] = 8.01088317e-21
     """Potential barrier between two particles."""
 
     history_units: ClassVar[dict[str, str]] = {

@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from tactsim.analytic.histories import Harmonic, History, Segment
 from tactsim.mechanics.paths.loading import Loading, pieces_of
 from tactsim.model import FrozenModel
-from tactsim.units import Frequency, Pressure, Time, format_quantity
+from tactsim.units import Frequency, NonNegative, Positive, Pressure, Time, format_quantity
 
 MMHG = 133.322387415
 """Pressure in Pa of a millimetre of mercury (BIPM, SI brochure, 8th edition, table 8)."""
@@ -30,15 +30,15 @@ class PulsePressure(FrozenModel):
     reading: Literal["above_diastole", "absolute", "captions"] = "above_diastole"
     """What the given geometry bears: ``above_diastole`` 0 to 40 mmHg (it is the geometry at 80 mmHg), ``absolute`` 80 to 120 mmHg
     (it is stress-free), ``captions`` 8 to 12 mmHg (erratum E14)."""
-    diastole: Annotated[Pressure, Field(ge=0)] | None = None
+    diastole: NonNegative[Pressure] | None = None
     """Least pressure, instead of the reading's."""
-    systole: Annotated[Pressure, Field(gt=0)] | None = None
+    systole: Positive[Pressure] | None = None
     """Largest pressure, instead of the reading's."""
     rate: Annotated[Frequency, Field(gt=0, le=1e3)] = 1.2
     """Beats per time; the default, 72 per minute, is a usual rate at rest (an assumption)."""
     beats: Annotated[int, Field(ge=1, le=1000)] | None = None
     """Number of beats, after which the diastolic pressure stays; by default they last until the end of the loading."""
-    rise: Annotated[Time, Field(gt=0)] = 1.0
+    rise: Positive[Time] = 1.0
     """Time from the beginning to the first beat, in which the diastolic pressure is reached."""
 
     @model_validator(mode="after")

@@ -16,7 +16,6 @@ from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.interfaces import Inclusion, Material
-from tactsim.interfaces.solid import Positive
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
@@ -25,7 +24,7 @@ from tactsim.mechanics.paths.loading import AnyLoading, check_periods
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.model import FrozenModel
 from tactsim.sensors.matrix_readout import MatrixReadout
-from tactsim.units import Angle, Length, format_quantity
+from tactsim.units import Angle, Length, NonNegative, Positive, format_quantity
 
 OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
@@ -44,7 +43,7 @@ class Block(FrozenModel):
     ((0.04, 0.04, 0.02), 'mooney_rivlin_3')
     """
 
-    size: tuple[Positive, Positive, Positive] = (40e-3, 40e-3, 20e-3)
+    size: tuple[Positive[Length], Positive[Length], Positive[Length]] = (40e-3, 40e-3, 20e-3)
     """Along x, y and z; the thesis prints none."""
     tissue: AnyMaterial
     """Material around the inclusions."""
@@ -74,11 +73,11 @@ class Embedded(FrozenModel):
 class JawSettings(FrozenModel):
     """A jaw and how it stands."""
 
-    width: Positive | None = None
+    width: Positive[Length] | None = None
     """Along x; by default a quarter wider than the block."""
-    depth: Positive | None = None
+    depth: Positive[Length] | None = None
     """Along y; by default a quarter deeper than the block."""
-    fillet: Annotated[Length, Field(ge=0)] = 1e-3
+    fillet: NonNegative[Length] = 1e-3
     """Radius of the edges."""
     tilt_x: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
     """Rotation about the x axis, right-handed, before that about y."""
@@ -117,7 +116,7 @@ class GraspSetup(FrozenModel):
     """Friction between jaws and tissue; the default is that of section 6.6."""
     loading: AnyLoading
     """What both jaws follow: closing from first touch, each by that much, or force, each by that much."""
-    penetration_tolerance: Positive | None = None
+    penetration_tolerance: Positive[Length] | None = None
     """Largest penetration at any surface quadrature point; by default 2e-4 of the block's height, at most 1e-2 of a prescribed
     closing. At most a tenth of that closing, of the block's height and of a jaw's fillet."""
     mesh: AnyBlockSource = AutomaticSource()

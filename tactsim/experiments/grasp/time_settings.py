@@ -9,7 +9,7 @@ from pydantic import Field
 
 from tactsim.interfaces import Material
 from tactsim.mechanics.paths.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
-from tactsim.units import Time
+from tactsim.units import Positive, Time
 
 MANY_ITERATIONS = 60
 """Newton iterations of a step, those of every augmentation together, beyond which the next one is not longer."""
@@ -24,7 +24,7 @@ class GraspTimeSettings(TimeSettings):
     """Steps per period of a sine or pulse, at least."""
     tolerance: Annotated[float, Field(gt=0, le=0.1)] = 5e-3
     """Largest estimated error of the stress of materials that relax, relative to its root mean square over the volume."""
-    first: Annotated[Time, Field(gt=0)] | None = None
+    first: Positive[Time] | None = None
     """First step of each piece if a material relaxes; by default a thousandth of the piece, and after a sudden change of the
     shortest relaxation time if that is shorter."""
     per_decade: Annotated[int, Field(ge=0, le=1000)] = 0

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup
 from tactsim.fem.paths.loading import StepControl
 from tactsim.fem.paths.progress import check_steps
 from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, Positive, format_quantity
 
 LEAST_STEP = 1e-9
 """First step over the displacement: Newton leaves 1e-10 of the forces, in which shorter ones drown."""
@@ -31,11 +31,11 @@ step is, and with the usual limits (7 and 12) steps of a ball stay an eighth of 
 class StepSettings(FrozenModel):
     """Lengths of the load steps, as displacements of the body."""
 
-    first: Annotated[Length, Field(gt=0)] | None = None
+    first: Positive[Length] | None = None
     """First step; by default a thousandth of the body's radius."""
-    largest: Annotated[Length, Field(gt=0)] | None = None
+    largest: Positive[Length] | None = None
     """Largest step; by default a twentieth of the body's radius."""
-    smallest: Annotated[Length, Field(gt=0)] | None = None
+    smallest: Positive[Length] | None = None
     """The run fails when a step would have to be shorter; by default a ten-thousandth of the first step."""
 
 
@@ -44,7 +44,7 @@ class DisplacedSetup(IndentationSetup):
 
     stop: Literal["threshold", "displacement"] = "threshold"
     """Whether the run ends at the threshold, or goes on to the displacement with the inner sensor in contact."""
-    displacement: Annotated[Length, Field(gt=0)]
+    displacement: Positive[Length]
     """Displacement of the body from first touch; the most that is tried when the run stops at the threshold."""
     steps: StepSettings = StepSettings()
     """Length of the load steps."""

@@ -14,7 +14,7 @@ from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.axisymmetric import Size, edge_graded, finer_at_surface, graded_to_peak
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.model import FrozenModel
-from tactsim.units import Length
+from tactsim.units import Length, Positive
 
 PEAK_ELEMENTS = 12
 """Elements over the radius of an annulus's hole that the size at the peak of the rise, on the axis, would allow.
@@ -27,13 +27,13 @@ threshold was 0.14 % too low; with these it is 0.06 % too high, with fewer unkno
 class MeshSettings(FrozenModel):
     """Size of the elements: finest at the edges of the body, growing with the distance from them."""
 
-    finest: Annotated[Length, Field(gt=0)] | None = None
+    finest: Positive[Length] | None = None
     """Element size at the edges; by default a third of the fillet, or a fiftieth of the body's width if its edge is sharp."""
     growth: Annotated[float, Field(gt=0, le=2)] = 0.5
     """Growth of the element size per distance from the edges, dimensionless."""
-    coarsest: Annotated[Length, Field(gt=0)] | None = None
+    coarsest: Positive[Length] | None = None
     """Largest element size; by default a fifth of the specimen's thickness."""
-    refinement: Annotated[float, Field(gt=0)] = 1.0
+    refinement: Positive[float] = 1.0
     """Divides every size: 2 halves the elements."""
     adaptive: bool = True
     """Whether elements that sliding and stretching make too long are split on the way."""

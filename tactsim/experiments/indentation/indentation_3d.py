@@ -18,7 +18,7 @@ from tactsim.interfaces import Experiment
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.revolved import SweepSymmetry, largest_offset, shifted_outside, swept
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, NonNegative, Positive, format_quantity
 
 if TYPE_CHECKING:
     from tactsim.fem.assembly.space import Measure
@@ -37,7 +37,7 @@ FEW_ITERATIONS, MANY_ITERATIONS = 12, 20
 class SpaceMeshSettings(MeshSettings):
     """Size of the elements in the section, and the sectors in which it is swept around the body's axis."""
 
-    finest: Annotated[Length, Field(gt=0)] | None = None
+    finest: Positive[Length] | None = None
     """Element size at the edges; by default the fillet, or three fiftieths of the body's radius if its edge is sharp."""
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0
     """Growth of the element size per distance from the edges, dimensionless."""
@@ -52,7 +52,7 @@ class SpaceIndentation(DisplacedSetup, Experiment):
 
     measure: ClassVar[Measure] = "solid"
     kind: Literal["indentation_3d"] = "indentation_3d"
-    offset: Annotated[Length, Field(ge=0)] = 0.0
+    offset: NonNegative[Length] = 0.0
     """Distance along x of the body's reference point from the axis of the specimen."""
     tilt_x: Tilt = 0.0
     """Rotation of the body about the x axis, right-handed, before that about y."""

@@ -24,7 +24,7 @@ from tactsim.mechanics.paths.step_policy import StepPolicy
 from tactsim.model import FrozenModel
 from tactsim.registry import Registered
 from tactsim.results.result import Status
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, Positive, format_quantity
 
 if TYPE_CHECKING:
     from tactsim.fem.assembly.space import Measure
@@ -104,7 +104,7 @@ class IndentationSetup(FrozenModel):
     """The rigid body; its reference point moves by the displacement."""
     contact: AnyLaw = Coulomb()
     """Friction between body and tissue."""
-    recess: Annotated[Length, Field(gt=0)] | None = None
+    recess: Positive[Length] | None = None
     """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
     penetration_tolerance: Annotated[Length, Field(ge=1e-10)] | None = None
     """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius, at most 2e-3 of a prescribed

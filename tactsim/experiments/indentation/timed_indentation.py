@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal, Self
+from typing import ClassVar, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.contact.coulomb import Coulomb
 from tactsim.experiments.indentation.history import history_units
@@ -15,7 +15,7 @@ from tactsim.materials.library import named_material
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mechanics.paths.loading import AnyLoading, DisplacementLoading
 from tactsim.mechanics.paths.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, Positive, format_quantity
 
 LOAD_STEPS = 20
 """Least number of steps of a ramp, and per period of a sine."""
@@ -36,7 +36,7 @@ class TimedIndentation(IndentationSetup, Experiment):
     """The prescribed history."""
     stop: Literal["end", "touch"] = "end"
     """Whether the run goes on to the end of the history or stops when the tissue touches the inner sensor."""
-    deepest: Annotated[Length, Field(gt=0)] | None = None
+    deepest: Positive[Length] | None = None
     """Displacement that the mesh must serve; by default the largest prescribed one, or a tenth of the body's radius."""
     time: TimeSettings = TimeSettings()
     """Steps of time."""

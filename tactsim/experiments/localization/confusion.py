@@ -27,7 +27,7 @@ from tactsim.outside.input_path import InputPath
 from tactsim.registry import kinds
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
-from tactsim.units import Force, format_quantity
+from tactsim.units import Force, NonNegative, format_quantity
 
 
 class Confusion(Experiment):
@@ -44,11 +44,11 @@ class Confusion(Experiment):
     """Folder of the same grasp of plain tissue at the same closing."""
     readings: Source = TAXEL_FORCE
     """Forces of the solution, or what was read through film, electronics and calibration (a grasp with a ``readout``)."""
-    noise: Annotated[Force, Field(ge=0)] = ROUNDING_NOISE
+    noise: NonNegative[Force] = ROUNDING_NOISE
     """Standard deviation of a reading; the default is what rounding to the sensor's resolution of 0.1 N (thesis 6.2) does."""
     draws: Annotated[int, Field(ge=1, le=1000)] = 5
     """How often the noise is drawn for each grasp."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Of the noise."""
     estimator: AnyEstimator = HypothesesEstimator()
     """What distinguishes the classes."""

@@ -23,7 +23,7 @@ from tactsim.mechanics.paths.loading import DisplacementLoading
 from tactsim.progress import elapsed_time
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
-from tactsim.units import Force, Length, format_quantity
+from tactsim.units import Force, Length, NonNegative, Positive, format_quantity
 
 RADII = np.array([1.5e-3, 2.5e-3, 3.5e-3, 5e-3, 6.5e-3, 8e-3])
 """Radii in m of the tabulated balls."""
@@ -62,15 +62,15 @@ class Detectability(Experiment):
     """Plain tissue between two jaws; its own matrix is not used."""
     matrices: Annotated[tuple[Annotated[int, Field(ge=2, le=32)], ...], Field(min_length=1, max_length=8)] = (3, 8, 16)
     """Taxels along each side of the matrices on both jaws."""
-    side: Annotated[Length, Field(gt=0)] = 30e-3
+    side: Positive[Length] = 30e-3
     """Side of the square that every matrix covers: its pitch is this over the number of taxels."""
     share: Annotated[float, Field(gt=0, le=1)] = 0.9
     """Size of a taxel over its pitch."""
     depths: Annotated[tuple[Length, ...], Field(min_length=1)] = tuple(np.linspace(3e-3, 17e-3, 8).tolist())
     """Of the centre of the lump below the upper face of the undeformed tissue."""
-    shear_ratios: Annotated[tuple[Annotated[float, Field(ge=0)], ...], Field(min_length=1)] = (1.8, 100.0)
+    shear_ratios: Annotated[tuple[NonNegative[float], ...], Field(min_length=1)] = (1.8, 100.0)
     """Shear modulus of the lump over that of the tissue; 1.8 is the thesis's lump in ICF (erratum E15), 100 a hard ball."""
-    noise: Annotated[Force, Field(gt=0)] = ROUNDING_NOISE
+    noise: Positive[Force] = ROUNDING_NOISE
     """Standard deviation of a reading of the first matrix; the default is what rounding to 0.1 N (thesis 6.2) does."""
     probability: Annotated[float, Field(gt=0, lt=1)] = 0.9
     """With which the smallest lump is found."""
@@ -78,7 +78,7 @@ class Detectability(Experiment):
     """Probability that plain tissue is taken for a lump."""
     draws: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
     """Of errors, by which the threshold is set."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Of these draws."""
 
     history_units: ClassVar[dict[str, str]] = {"taxels": "1", "threshold": "1"}

@@ -25,7 +25,7 @@ CLOSE = 1e-7
 """Error in m of a radius found."""
 
 
-def unit_templates(response: LumpResponse, every: int = 1) -> Array:
+def unit_templates(response: LumpResponse, every: int) -> Array:
     """Responses (n, taxels) of all tabulated balls at every ``every``-th radius, each over its own length."""
     flat = response.values[::every].reshape(-1, int(np.prod(response.values.shape[4:])))
     length = np.linalg.norm(flat, axis=1)

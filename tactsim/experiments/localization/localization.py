@@ -36,7 +36,7 @@ from tactsim.outside.input_path import InputPath
 from tactsim.progress import elapsed_time
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, rows
-from tactsim.units import Force, format_quantity
+from tactsim.units import Force, NonNegative, format_quantity
 
 Taxel = tuple[JawName, Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
@@ -64,7 +64,7 @@ class Localization(Experiment):
     """Folder of the same grasp without a lump at the same closing; null if there is none."""
     readings: Source = TAXEL_FORCE
     """Forces of the solution, or what was read through film, electronics and calibration (a grasp with a ``readout``)."""
-    noise: Annotated[Force, Field(ge=0)] = ROUNDING_NOISE
+    noise: NonNegative[Force] = ROUNDING_NOISE
     """Standard deviation of a reading; the default is what rounding to the sensor's resolution of 0.1 N (thesis 6.2) does."""
     dead: tuple[Taxel, ...] = ()
     """Taxels (jaw, row, column) that cannot be trusted; they are interpolated from their neighbours."""

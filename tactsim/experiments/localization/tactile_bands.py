@@ -21,7 +21,7 @@ from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import rows
-from tactsim.units import Force, format_quantity
+from tactsim.units import Force, Positive, format_quantity
 
 MOST_ELEMENTS = 4096
 """Elements of an array: the picture and the result hold each of them."""
@@ -92,7 +92,7 @@ class TactileBands(Experiment):
     """Pixels N along the arrays, at least one for each element."""
     rows: Annotated[int, Field(ge=2, le=MOST_ELEMENTS)] = SHAPE[0]
     """Rows M of the section between two arrays."""
-    normalising: Annotated[Force, Field(gt=0)] | None = None
+    normalising: Positive[Force] | None = None
     """Signal alpha of the brightest level; null is the largest reading."""
     form: Form = "corrected"
     """Equations corrected by the errata E12, E13 and E25, or as the thesis prints them."""

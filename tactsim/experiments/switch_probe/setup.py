@@ -22,7 +22,7 @@ from tactsim.model import FrozenModel
 from tactsim.sensors.electronics.calibration import THESIS_LINE, AnyCalibration
 from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.sensors.switch_array import SwitchArray
-from tactsim.units import Length, Speed, format_quantity
+from tactsim.units import Length, NonNegative, Positive, Speed, format_quantity
 
 COUNT = 5
 """Switches of the probe of chapter 5."""
@@ -53,9 +53,9 @@ class ProbeTissue(FrozenModel):
 class ProbeBlock(FrozenModel):
     """A block of tissue on a rigid base, as deep as the probe."""
 
-    width: Annotated[Length, Field(gt=0)] = 40e-3
+    width: Positive[Length] = 40e-3
     """Width, the probe in its middle; its sides are free."""
-    height: Annotated[Length, Field(gt=0)] = 20e-3
+    height: Positive[Length] = 20e-3
     """Height."""
 
 
@@ -64,9 +64,9 @@ class SwitchProbeSetup(FrozenModel):
 
     tissues: Annotated[tuple[ProbeTissue, ...], Field(min_length=1, max_length=20)]
     """Tissues, one after the other."""
-    rates: Annotated[tuple[Annotated[Speed, Field(gt=0)], ...], Field(min_length=1, max_length=50)] = (1e-3,)
+    rates: Annotated[tuple[Positive[Speed], ...], Field(min_length=1, max_length=50)] = (1e-3,)
     """Rates of indentation; each tissue meets each of them at rest."""
-    depth: Annotated[Length, Field(gt=0)] = 5e-3
+    depth: Positive[Length] = 5e-3
     """Depth at which the probe turns back."""
     model: Literal["fast", "fem"] = "fast"
     """Finite elements for every tissue and rate, or the elastic curve of one such run, made to relax by superposition."""
@@ -74,7 +74,7 @@ class SwitchProbeSetup(FrozenModel):
     """How far the tissue touches the sides: as finite elements find, or up to its undeformed surface, as the thesis takes it."""
     probe: Trapezoid = Trapezoid()
     """Section of the probe."""
-    width: Annotated[Length, Field(gt=0)] = 10e-3
+    width: Positive[Length] = 10e-3
     """Width of the probe out of the plane."""
     block: ProbeBlock = ProbeBlock()
     """Size of the specimen; the thesis's cubes have none printed."""
@@ -92,7 +92,7 @@ class SwitchProbeSetup(FrozenModel):
     """Line of the force sensor and of each switch."""
     noise_factor: Annotated[float, Field(ge=1, le=100)] | None = 8.0
     """Thresholds of the array as multiples of what noise and converter mean in force; null takes those of the array."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Seed of the noise."""
 
     @model_validator(mode="after")

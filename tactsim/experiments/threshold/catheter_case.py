@@ -13,7 +13,7 @@ from tactsim.experiments.threshold.valve_tissue import ValveSurface
 from tactsim.model import FrozenModel
 from tactsim.sensors.threshold.sensor_ring import SensorRing
 from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
-from tactsim.units import Angle, Length, Speed, Time, format_quantity
+from tactsim.units import Angle, Length, NonNegative, Positive, Speed, Time, format_quantity
 
 STEEPEST = np.pi / 6 * (1 + 1e-12)
 """Largest tilt in rad of the tip: 30 degrees, whatever the rounding."""
@@ -34,17 +34,17 @@ class CatheterCase(FrozenModel):
     """Angle between tip and surface."""
     tilt_direction: Angle = 0.0
     """Where the tilted tip is lowest, from the x axis."""
-    press: Annotated[Length, Field(gt=0)] = 1e-3
+    press: Positive[Length] = 1e-3
     """Displacement of the tip after its first sensor has touched."""
-    speed: Annotated[Speed, Field(gt=0)] = 1e-3
+    speed: Positive[Speed] = 1e-3
     """Speed of the tip."""
     sensor: ThresholdSensor = ThresholdSensor()
     """Electronics of each sensor."""
     trials: Annotated[int, Field(ge=1, le=100_000)] = 200
     """Repeated touches at the same place."""
-    lead: Annotated[Time, Field(gt=0)] = 0.5
+    lead: Positive[Time] = 0.5
     """Recording before the first touch."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Seed of the noise."""
 
     def _scalable(self) -> bool:

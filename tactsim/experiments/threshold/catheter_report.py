@@ -14,7 +14,7 @@ from tactsim.experiments.threshold.catheter_case import CatheterCase
 from tactsim.experiments.threshold.report import RESOLUTION
 from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.scene import CatheterTipScene
-from tactsim.experiments.threshold.tip_contact import SensorContact, TipContact
+from tactsim.experiments.threshold.tip_contact import TipContact
 from tactsim.interfaces.run import Findings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.outcome.plausibility import oddities
@@ -87,16 +87,14 @@ class CatheterReport:
         self._area = ring.area
         self._shares = experiment.surface.shares(ring, experiment.place)
         self._readings: list[Reading] = []
-        self._contacts: list[SensorContact] = []
-        self._errors: list[TipContact] = []
+        self._met: list[TipContact] = []
         self._steps: list[StepRecord] = []
 
     def add(self, reading: Reading, met: TipContact) -> StepRecord:
         """The next sensor, with what it would measure without errors."""
         index, contact = len(self._readings), met.contact
-        self._errors.append(met)
+        self._met.append(met)
         self._readings.append(reading)
-        self._contacts.append(contact)
         ring, mean, deviation = self._experiment.ring, reading.mean, reading.deviation
         x, y = ring.positions[index] + np.array(self._experiment.place)
         values = {
@@ -155,7 +153,7 @@ class CatheterReport:
 
     def _hardest(self) -> dict[str, Quantity]:
         """The hardest sensor by the mean reports, its margin, and the chances over the trials."""
-        means = np.array([-np.inf if r.mean is None else r.mean for r in self._readings]) / self._area
+        means = self._means
         wrong, elsewhere, undecided = self._chances()
         quantities = {
             "chance_of_wrong": Quantity(wrong, "1", "part of the trials in which another sensor than the hardest is found"),
@@ -180,16 +178,21 @@ class CatheterReport:
             quantities["margin_relative"] = Quantity(margin / float(means[best]), "1", "margin over its threshold pressure")
         return quantities
 
+    @property
+    def _means(self) -> Array:
+        """Mean reported pressure in Pa of each sensor, minus infinity without any."""
+        return np.array([-np.inf if r.mean is None else r.mean for r in self._readings]) / self._area
+
     def _candidates(self, means: Array, best: int) -> list[int]:
         """Numbers of the sensors whose mean report may be the highest: within the model's own errors and twice the noise's."""
-        own = np.array([met.own for met in self._errors])
+        own = np.array([met.own for met in self._met])
         deviations = np.array([reading.deviation or 0.0 for reading in self._readings]) / self._area
         width = own * np.where(np.isfinite(means), means, 0.0) + 2 * deviations
         return [k + 1 for k in range(len(means)) if means[k] + width[k] >= means[best] - width[best]]
 
     def _undecided(self) -> Iterator[str]:
         """A warning if more than one sensor may be the hardest."""
-        means = np.array([-np.inf if r.mean is None else r.mean for r in self._readings]) / self._area
+        means = self._means
         if np.isfinite(means).any() and len(candidates := self._candidates(means, int(means.argmax()))) > 1:
             finer = ", or set model: {kind: fem}" if self._experiment.model.kind == "closed_form" else ""
             yield (
@@ -199,7 +202,7 @@ class CatheterReport:
 
     def _chances(self) -> tuple[float, float, float]:
         """Part of the trials with a wrong sensor, with one mostly on a wrong tissue, and with no answer."""
-        true = np.array([contact.force for contact in self._contacts])
+        true = np.array([met.contact.force for met in self._met])
         right = true >= true.max() * (1 - SAME)
         force = np.array([np.where(r.valid, r.force, -np.inf) for r in self._readings])
         answered = np.isfinite(force).any(axis=0)
@@ -255,7 +258,7 @@ class CatheterReport:
         straddling = [str(index + 1) for index, share in enumerate(self._shares) if share.max() < 1]
         if straddling:
             yield f"sensors over two tissues: {', '.join(straddling)}; their thresholds are mixed"
-        low = [contact.force for contact in self._contacts if contact.force < RESOLUTION]
+        low = [met.contact.force for met in self._met if met.contact.force < RESOLUTION]
         if low:
             least, resolved = format_quantity(min(low), "N"), format_quantity(RESOLUTION, "N")
             yield f"{len(low)} thresholds, {least} at least, are below the resolution of {resolved} of 3.1.2 (erratum E27)"
@@ -264,7 +267,7 @@ class CatheterReport:
         yield from self._oddities()
         if self._experiment.model.kind != "closed_form":
             return
-        deepest = max((c.displacement for c in self._contacts), default=0.0) / self._experiment.ring.outer_radius
+        deepest = max((met.contact.displacement for met in self._met), default=0.0) / self._experiment.ring.outer_radius
         if deepest > SMALL_DISPLACEMENT:
             limit = f"linear theory is meant for up to {SMALL_DISPLACEMENT:g}"
             yield f"a threshold lies at a displacement of up to {deepest:.3g} of the outer radius; {limit}"

@@ -26,7 +26,7 @@ from tactsim.mechanics.paths.loading import DisplacementLoading
 from tactsim.model import FrozenModel
 from tactsim.results.result import Result, Status, StepRecord
 from tactsim.sensors.threshold.sensor_ring import SensorRing
-from tactsim.units import Length
+from tactsim.units import Length, Positive
 
 if TYPE_CHECKING:
     from tactsim.mechanics.models.annulus_on_bands import AnnulusOnBands
@@ -100,9 +100,9 @@ class FiniteElementTip(FrozenModel):
     kind: Literal["fem"] = "fem"
     friction: Annotated[float, Field(ge=0, le=2)] = 0.4
     """Coefficient of friction."""
-    fillet: Annotated[Length, Field(gt=0)] | None = None
+    fillet: Positive[Length] | None = None
     """Fillet of the edges of a sensor; null is a twentieth of its outer radius."""
-    surface_radius: Annotated[Length, Field(gt=0)] | None = None
+    surface_radius: Positive[Length] | None = None
     """Radius of a convex surface under each sensor; null is flat. Near a border the correction is that of a flat surface."""
 
     def contacts(

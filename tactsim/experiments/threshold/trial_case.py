@@ -12,7 +12,7 @@ from tactsim.model import FrozenModel, check_increasing
 from tactsim.sensors.electronics.low_pass import LowPass
 from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
-from tactsim.units import Frequency, Speed, Time, Voltage
+from tactsim.units import Frequency, NonNegative, Positive, Speed, Time, Voltage
 
 
 class TrialCase(FrozenModel):
@@ -22,17 +22,17 @@ class TrialCase(FrozenModel):
     """Where the forces come from."""
     sensor: ThresholdSensor = ThresholdSensor()
     """The sensor and its electronics; ``cutoffs`` and ``noises`` replace the cut-off and the white noise in it."""
-    speeds: Annotated[tuple[Annotated[Speed, Field(gt=0)], ...], Field(min_length=1)]
+    speeds: Annotated[tuple[Positive[Speed], ...], Field(min_length=1)]
     """Speeds of indentation, increasing."""
-    noises: Annotated[tuple[Annotated[Voltage, Field(ge=0)], ...], Field(min_length=1)]
+    noises: Annotated[tuple[NonNegative[Voltage], ...], Field(min_length=1)]
     """Root mean squares of the white noise of a sample, increasing; the line pick-up is that of the chain."""
-    cutoffs: Annotated[tuple[Annotated[Frequency, Field(gt=0)], ...], Field(min_length=1)]
+    cutoffs: Annotated[tuple[Positive[Frequency], ...], Field(min_length=1)]
     """Cut-off frequencies of the low pass, increasing."""
     trials: Annotated[int, Field(ge=1, le=10_000)] = 50
     """Indentations of each combination."""
-    lead: Annotated[Time, Field(gt=0)] = 0.5
+    lead: Positive[Time] = 0.5
     """Recording before the tissue is touched, in which a trigger is already false."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Seed of the noise."""
 
     @model_validator(mode="after")

@@ -21,7 +21,7 @@ class BandTissue(FrozenModel):
 
     name: Annotated[str, Field(min_length=1, max_length=40)]
     """Name in figures and warnings."""
-    shear_modulus: Annotated[Pressure, Field(gt=0)]
+    shear_modulus: Positive[Pressure]
     """Small-strain shear modulus."""
     thickness: Positive[Length]
     """Thickness."""
@@ -29,7 +29,7 @@ class BandTissue(FrozenModel):
     """How it rests on what lies below."""
     relaxation: Relaxation | None = None
     """Prony series of its stress; null is elastic tissue."""
-    threshold_pressure: Annotated[Pressure, Field(gt=0)] | None = None
+    threshold_pressure: Positive[Pressure] | None = None
     """Threshold pressure of the sensor on this tissue, from a simulation; null takes the closed form."""
 
 

@@ -27,10 +27,11 @@ from pydantic import Field, ValidationError
 
 from tactsim.array import Array
 from tactsim.errors import InputError, shown
-from tactsim.interfaces.taxel_layout import JAWS, PositiveLength, TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.live.sources.scene import LARGEST_FORCE, Frame, PageScene, plain_scene
 from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
+from tactsim.units import Length, Positive
 
 SCHEMA = "tactsim/frames/1"
 LONGEST_LINE = 8 * 2**20
@@ -45,7 +46,7 @@ class Description(FrozenModel):
     """Version of the format."""
     matrix: TaxelLayout
     """Taxels on each jaw."""
-    block_size: tuple[PositiveLength, PositiveLength, PositiveLength]
+    block_size: tuple[Positive[Length], Positive[Length], Positive[Length]]
     """Of the undeformed tissue along x, y and z."""
     title: Annotated[str, Field(max_length=200)] = "live"
     """What the page calls it."""

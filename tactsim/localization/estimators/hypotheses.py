@@ -29,7 +29,7 @@ from tactsim.localization.reference_errors import (
     whitened,
     without_error,
 )
-from tactsim.units import Length
+from tactsim.units import Length, NonNegative, Positive
 
 ClassName = Literal["lump", "two_lumps", "artery", "two_arteries"]
 CLASSES: tuple[str, ...] = ("none", "lump", "two_lumps", "artery", "two_arteries")
@@ -70,9 +70,9 @@ class HypothesesEstimator(Estimator):
     """Least and largest radius of a lump."""
     tube_radii: RadiusLimits = (2e-3, 5e-3)
     """Least and largest outer radius of an artery."""
-    gap: Annotated[Length, Field(ge=0)] = 0.5e-3
+    gap: NonNegative[Length] = 0.5e-3
     """Least distance of a body from the faces of the block that it does not leave through."""
-    contrast_spread: Annotated[float, Field(gt=0)] = 5.0
+    contrast_spread: Positive[float] = 5.0
     """Prior standard deviation of the contrast."""
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.2
     """Error of the forward model over the root mean square of the change."""
@@ -85,7 +85,7 @@ class HypothesesEstimator(Estimator):
     """Prior probability of any inclusion."""
     second: Annotated[float, Field(gt=0, le=1)] = 0.2
     """Prior probability of a class of two over that of one: readings say nothing of a second one too weak to be felt."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """Seed of the draws by which pairs are averaged."""
 
     @property

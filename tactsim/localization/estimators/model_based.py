@@ -30,7 +30,7 @@ from tactsim.localization.reference_errors import (
 )
 from tactsim.localization.region import CellRegion
 from tactsim.localization.separate_places import rises_apart
-from tactsim.units import Length
+from tactsim.units import Length, NonNegative, Positive
 
 EVERY, COARSE = 2, 4
 """Spacing, in tabulated centres, of the balls of which pairs are made, and of those that are tried in all pairs."""
@@ -79,9 +79,9 @@ class ModelBasedEstimator(Estimator):
     kind: Literal["model_based"] = "model_based"
     radii: RadiusLimits = (2e-3, 7e-3)
     """Least and largest radius."""
-    gap: Annotated[Length, Field(ge=0)] = 0.5e-3
+    gap: NonNegative[Length] = 0.5e-3
     """Least distance of the ball from the faces of the block."""
-    contrast_spread: Annotated[float, Field(gt=0)] = 5.0
+    contrast_spread: Positive[float] = 5.0
     """Standard deviation of the contrast beforehand; 5/2 is a small rigid ball, large ones act several times more."""
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.35
     """Error of the forward model over the root mean square of the change; the default is the least of five at which nine in

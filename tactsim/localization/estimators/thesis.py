@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
-from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -15,7 +14,7 @@ from tactsim.interfaces.readings import Readings, rising
 from tactsim.localization.bands import Form
 from tactsim.localization.section_image import depth_share
 from tactsim.localization.separate_places import PROMINENCE, nearest_peak, separate_peaks
-from tactsim.units import format_quantity
+from tactsim.units import NonNegative, format_quantity
 
 
 class ThesisEstimator(Estimator):
@@ -42,7 +41,7 @@ class ThesisEstimator(Estimator):
     """Centroid of the sums above their base, or the brightest point of the top view, which lies in the centre of a column."""
     form: Form = "corrected"
     """Eq. .2.3 corrected (E13), or as printed, which turns the depth upside down."""
-    threshold: Annotated[float, Field(ge=0)] = 4.0
+    threshold: NonNegative[float] = 4.0
     """Standard deviations of the noise by which the strongest place must exceed its base."""
 
     @classmethod

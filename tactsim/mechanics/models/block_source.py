@@ -16,14 +16,13 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import Positive
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.foreign import LengthUnit
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.units import format_quantity
+from tactsim.units import Length, NonNegative, Positive, format_quantity
 
 if TYPE_CHECKING:
     from tactsim.mesh.fitting.labelling import Surfaces
@@ -115,11 +114,11 @@ class GradedSource(BlockMeshSettings, BlockSource):
     Several lumps are served where along x, y or z one of each two ends before the other begins."""
 
     kind: Literal["graded"] = "graded"
-    size: Positive = 6e-3
+    size: Positive[Length] = 6e-3
     """Edge length far from the inclusion and the faces."""
-    inclusion_size: Positive = 2e-3
+    inclusion_size: Positive[Length] = 2e-3
     """Edge length at the inclusion, about; three to five cells across it at least, by its size and place."""
-    edge_size: Positive | None = 1.6e-3
+    edge_size: Positive[Length] | None = 1.6e-3
     """Thickness of cells at the faces, from which they grow at once; null means a third of size. Where a jaw is smaller than the
     block, they are three quarters as thick, and thin also on both sides of its edges."""
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0
@@ -195,7 +194,7 @@ class FileSource(BlockSource):
     """Any file of tetrahedra that meshio reads."""
     unit: LengthUnit
     """Unit of its coordinates."""
-    regions: dict[str, Annotated[int, Field(ge=0)]] | None = None
+    regions: dict[str, NonNegative[int]] | None = None
     """Region of each tag: 0 is the tissue, k the inclusion k counted from 1. Tags are whole numbers or names of groups."""
     tag: str | None = None
     """Name of the cell data with the tags; by default the first usual one in the file."""

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.array import Array
 from tactsim.interfaces import Material
@@ -13,7 +13,7 @@ from tactsim.materials import AnyMaterial
 from tactsim.mesh.axisymmetric import Size, section_mesh
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.model import FrozenModel
-from tactsim.units import Length, format_quantity
+from tactsim.units import Length, Positive, format_quantity
 
 LARGEST_CAP = 0.9
 """Largest difference of height of a curved surface, as a part of the thickness."""
@@ -22,7 +22,7 @@ LARGEST_CAP = 0.9
 class Layer(FrozenModel):
     """A layer of other material at the top of the specimen."""
 
-    thickness: Annotated[Length, Field(gt=0)]
+    thickness: Positive[Length]
     """Thickness of the layer."""
     material: AnyMaterial
     """Material of the layer."""
@@ -38,9 +38,9 @@ class Specimen(FrozenModel):
 
     material: AnyMaterial
     """Material below the layers."""
-    thickness: Annotated[Length, Field(gt=0)] = 10e-3
+    thickness: Positive[Length] = 10e-3
     """Thickness on the axis of a flat specimen, layers included."""
-    radius: Annotated[Length, Field(gt=0)] = 15e-3
+    radius: Positive[Length] = 15e-3
     """Radius of the cylinder; its side is free."""
     layers: tuple[Layer, ...] = ()
     """Layers from the surface down, inside the thickness."""
@@ -48,7 +48,7 @@ class Specimen(FrozenModel):
     """Whether the tissue sticks to the base or slides on it without friction."""
     surface: Literal["flat", "convex", "concave"] = "flat"
     """Shape of the top."""
-    surface_radius: Annotated[Length, Field(gt=0)] | None = None
+    surface_radius: Positive[Length] | None = None
     """Radius of the sphere that a convex or concave top follows."""
 
     @model_validator(mode="after")

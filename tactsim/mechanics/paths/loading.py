@@ -14,7 +14,7 @@ from tactsim.analytic.histories import Harmonic, History, Segment
 from tactsim.errors import Refused
 from tactsim.model import FrozenModel
 from tactsim.refusals import refusals_of
-from tactsim.units import Force, Frequency, Length, Time, format_quantity, written
+from tactsim.units import Force, Frequency, Length, Positive, Time, format_quantity, written
 
 MOST_PERIODS = 10_000
 """Periods of a wave: with the fewest steps of a period, four, nearly as many steps as a path may have (``fem.progress``)."""
@@ -40,7 +40,7 @@ class Hold(FrozenModel):
     """The present value, held."""
 
     kind: Literal["hold"] = "hold"
-    duration: Annotated[Time, Field(gt=0)]
+    duration: Positive[Time]
     """How long."""
 
     def segments(self, start: float, value: float) -> tuple[Segment, ...]:
@@ -54,7 +54,7 @@ class Jump(FrozenModel):
     kind: Literal["jump"]
     to: float
     """The new value."""
-    duration: Annotated[Time, Field(gt=0)]
+    duration: Positive[Time]
     """How long it is held."""
 
     def segments(self, start: float, value: float) -> tuple[Segment, ...]:
@@ -68,7 +68,7 @@ class Ramp(FrozenModel):
     kind: Literal["ramp"]
     to: float
     """The value at the end."""
-    duration: Annotated[Time, Field(gt=0)]
+    duration: Positive[Time]
     """How long it takes."""
 
     def segments(self, start: float, value: float) -> tuple[Segment, ...]:
@@ -83,9 +83,9 @@ class Sine(FrozenModel):
     kind: Literal["sine"]
     amplitude: float
     """Amplitude."""
-    frequency: Annotated[Frequency, Field(gt=0)]
+    frequency: Positive[Frequency]
     """Frequency."""
-    duration: Annotated[Time, Field(gt=0)]
+    duration: Positive[Time]
     """How long."""
 
     @model_validator(mode="after")

@@ -12,7 +12,7 @@ from pydantic import Field
 from tactsim.fem.paths.time_steps import TimeControl
 from tactsim.interfaces import Material
 from tactsim.model import FrozenModel
-from tactsim.units import Time
+from tactsim.units import Positive, Time
 
 if TYPE_CHECKING:
     from tactsim.mechanics.paths.history_path import TimeInterval
@@ -30,11 +30,11 @@ class TimeSettings(FrozenModel):
 
     tolerance: Annotated[float, Field(gt=0, le=0.1)] = 1e-3
     """Largest estimated error of the stress, relative to its root mean square over the volume."""
-    first: Annotated[Time, Field(gt=0)] | None = None
+    first: Positive[Time] | None = None
     """First step of each piece; by default a thousandth of the shortest relaxation time or of the piece, whatever is shorter."""
     per_decade: Annotated[int, Field(ge=0, le=1000)] = 5
     """Times per decade of time since the beginning of each piece at which a step must end, so that plots are even."""
-    earliest: Annotated[Time, Field(gt=0)] | None = None
+    earliest: Positive[Time] | None = None
     """First of these times, and from where on a closed form is compared with; by default a millionth of the piece, or 1 us if
     that is later."""
 

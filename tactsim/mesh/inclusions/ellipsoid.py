@@ -9,9 +9,9 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import BallImage, Point, Positive, Solid, Triangles
+from tactsim.interfaces.solid import BallImage, Point, Solid, Triangles
 from tactsim.mesh.solid import outward
-from tactsim.units import Angle
+from tactsim.units import Angle, Length, Positive
 
 BISECTIONS = 110
 """Halvings of the bracket of the nearest point: down to round-off from any ratio of the axes."""
@@ -32,7 +32,7 @@ class Ellipsoid(Inclusion):
     data_set_number: ClassVar[int | None] = 2
     center: Point
     """Centre, from the corner of the block: along the columns, along the rows, and from the lower jaw."""
-    semi_axes: tuple[Positive, Positive, Positive]
+    semi_axes: tuple[Positive[Length], Positive[Length], Positive[Length]]
     """Half the length of each axis before rotation."""
     rotation: tuple[Angle, Angle, Angle] = (0.0, 0.0, 0.0)
     """Angles of the rotations about the fixed axes x, y, z, in this order."""

@@ -8,8 +8,9 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import Point, Positive, Solid
+from tactsim.interfaces.solid import Point, Solid
 from tactsim.mesh.inclusions.ellipsoid import EllipsoidSolid
+from tactsim.units import Length, Positive
 
 
 class Sphere(Inclusion):
@@ -24,7 +25,7 @@ class Sphere(Inclusion):
     data_set_number: ClassVar[int | None] = 1
     center: Point
     """Centre, from the corner of the block: along the columns, along the rows, and from the lower jaw."""
-    radius: Positive
+    radius: Positive[Length]
     """Radius."""
 
     @classmethod

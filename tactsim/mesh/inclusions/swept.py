@@ -86,15 +86,15 @@ class SweptSolid(Solid):
         speed, bend = np.linalg.norm(derivative, axis=1), line.curvature(s)
         first, second = line.frames(s)
         nodes, weights = np.polynomial.legendre.leggauss(RADIAL_POINTS)
-        total = 0.0
+        rho, weight = (nodes + 1) / 2 * self.radius, weights / 2 * self.radius
+        parts = []
         for theta in (np.arange(ANGLES) + 0.5) * 2 * np.pi / ANGLES:
             across = np.cos(theta) * first + np.sin(theta) * second
-            for rho, weight in zip((nodes + 1) / 2 * self.radius, weights / 2 * self.radius, strict=True):
-                fibre = on + rho * across
-                depth = np.minimum(fibre, self.size - fibre).min(axis=1)
-                density = speed * (1 - rho * (bend * across).sum(axis=1))
-                total += _length_inside(s, depth, density) * rho * weight * 2 * np.pi / ANGLES
-        return float(total)
+            fibres = on.T[:, None] + rho[:, None] * across.T[:, None]
+            depth = np.minimum(fibres, self.size[:, None, None] - fibres).min(axis=0)
+            density = speed * (1 - rho[:, None] * (bend * across).sum(axis=1))
+            parts += (_lengths_inside(s, depth, density) * rho * weight * 2 * np.pi / ANGLES).tolist()
+        return float(sum(parts))
 
     def bounds(self) -> Array:
         """Lowest and highest coordinates (2, 3) in m."""
@@ -103,14 +103,14 @@ class SweptSolid(Solid):
         return np.array([(on - reach).min(axis=0), (on + reach).max(axis=0)])
 
 
-def _length_inside(s: Array, depth: Array, density: Array) -> float:
-    """Integral of the density (n,) over the parameters (n,) where the depth (n,), linear in between, is positive."""
-    a, b = depth[:-1], depth[1:]
+def _lengths_inside(s: Array, depth: Array, density: Array) -> Array:
+    """Integrals (m,) of the density (m, n) over the parameters (n,) where the depth (m, n), linear in between, is positive."""
+    a, b = depth[:, :-1], depth[:, 1:]
     inside = (a >= 0) & (b >= 0)
     crossing = (a >= 0) != (b >= 0)
     share = np.where(inside, 1.0, 0.0)
     share[crossing] = np.maximum(a, b)[crossing] / np.abs(a - b)[crossing]
-    return float((share * np.diff(s) * (density[:-1] + density[1:]) / 2).sum())
+    return np.asarray((share * np.diff(s) * (density[:, :-1] + density[:, 1:]) / 2).sum(axis=1))
 
 
 def _side_triangles(rings: int, around: int) -> Array:

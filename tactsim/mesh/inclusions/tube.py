@@ -11,10 +11,10 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import FACES, Measures, Point, Positive, Solid
+from tactsim.interfaces.solid import FACES, Measures, Point, Solid
 from tactsim.mesh.inclusions.centre_line import CentreLine
 from tactsim.mesh.inclusions.swept import SweptSolid
-from tactsim.units import format_quantity
+from tactsim.units import Length, Positive, format_quantity
 
 LARGEST_EXTENSION = 6.0
 """How far a tube may go on beyond its last point to leave the block, in outer radii: a slope of 80 degrees to the face."""
@@ -45,9 +45,9 @@ class Tube(Inclusion):
     hollow: ClassVar[bool] = True
     centre_line: Annotated[tuple[Point, ...], Field(min_length=2)]
     """Points of the centre line; two make a straight tube, more a smooth curve through them."""
-    inner_radius: Positive
+    inner_radius: Positive[Length]
     """Radius of the empty space."""
-    wall: Positive
+    wall: Positive[Length]
     """Thickness of the wall."""
 
     @classmethod

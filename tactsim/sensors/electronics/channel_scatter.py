@@ -11,7 +11,7 @@ from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.model import FrozenModel
 from tactsim.sensors.electronics.calibration import LinearCalibration
-from tactsim.units import Force
+from tactsim.units import Force, NonNegative, Positive
 
 GAINS = 1
 """Names the stream of random numbers: the noise of a reading, which may have the same seed, draws others."""
@@ -32,9 +32,9 @@ class ChannelScatter(FrozenModel):
 
     repeatability: Annotated[float, Field(ge=0, le=0.1)] = 0.025
     """Standard deviation ``r`` of the force at full scale, over the full scale."""
-    full_scale: Annotated[Force, Field(gt=0)] = 20.0
+    full_scale: Positive[Force] = 20.0
     """``F_s``."""
-    seed: Annotated[int, Field(ge=0)] = 1
+    seed: NonNegative[int] = 1
     """The same seed gives the same channels."""
 
     def gains(self, channels: tuple[int, ...], line: LinearCalibration) -> Array:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Annotated, Self
+from typing import Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.array import Array
 from tactsim.interfaces import SensorFilm
@@ -19,7 +19,7 @@ from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.electronics.signal_chain import Recording, SignalChain
 from tactsim.sensors.films.any_film import ConductingFilm
 from tactsim.sensors.films.film import Film
-from tactsim.units import Force
+from tactsim.units import Force, NonNegative, Positive
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,7 @@ class ForceElectronics(FrozenModel):
     """Electronics of each channel."""
     calibration: AnyCalibration | None = None
     """From conductance to force; null is the line through the film's own conductances at the ``calibration_forces``."""
-    calibration_forces: tuple[Annotated[Force, Field(ge=0)], Annotated[Force, Field(gt=0)]] = (0.0, 2.0)
+    calibration_forces: tuple[NonNegative[Force], Positive[Force]] = (0.0, 2.0)
     """Range of the constant forces of that calibration, read after 1 s."""
 
     @model_validator(mode="after")

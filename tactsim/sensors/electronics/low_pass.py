@@ -12,7 +12,7 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.model import FrozenModel
-from tactsim.units import Frequency, format_quantity
+from tactsim.units import Frequency, Positive, format_quantity
 
 INVERTIBLE = 1
 """Highest order that is inverted: the inverse has as many poles at -1, from the second on round-off grows with the samples."""
@@ -29,7 +29,7 @@ class LowPass(FrozenModel):
     Source: thesis, 3.1.2 (first order, 10 Hz) and 6.3 (40 Hz, no order given: first is assumed, errata E27).
     """
 
-    cutoff: Annotated[Frequency, Field(gt=0)] = 40.0
+    cutoff: Positive[Frequency] = 40.0
     """Frequency at which the gain is 1/sqrt(2)."""
     order: Annotated[int, Field(ge=1, le=8)] = 1
     """Number of poles."""

@@ -10,7 +10,7 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.model import FrozenModel
-from tactsim.units import Frequency, Voltage
+from tactsim.units import Frequency, NonNegative, Voltage
 
 
 class Noise(FrozenModel):
@@ -21,9 +21,9 @@ class Noise(FrozenModel):
     The thesis names the 60 Hz pick-up (3.1.2, 6.3) without its size; both sizes are declared by the user, zero by default.
     """
 
-    white: Annotated[Voltage, Field(ge=0)] = 0.0
+    white: NonNegative[Voltage] = 0.0
     """Root mean square ``s`` of the white noise of a sample, all of it between 0 Hz and half the sampling rate."""
-    line: Annotated[Voltage, Field(ge=0)] = 0.0
+    line: NonNegative[Voltage] = 0.0
     """Amplitude ``a`` of the pick-up."""
     line_frequency: Annotated[Frequency, Field(gt=0, le=1e9)] = 60.0
     """Frequency ``f`` of the power line."""

@@ -15,7 +15,7 @@ from tactsim.sensors.electronics.converter import Converter
 from tactsim.sensors.electronics.divider import divider_conductance, divider_slope, divider_voltage
 from tactsim.sensors.electronics.low_pass import LowPass
 from tactsim.sensors.electronics.noise import Noise
-from tactsim.units import Frequency, Resistance, Voltage
+from tactsim.units import Frequency, Positive, Resistance, Voltage
 
 MOST_SAMPLES = 10**8
 """Longest record, in samples per channel."""
@@ -73,7 +73,7 @@ class SignalChain(FrozenModel):
     """Amplifier in front of the converter."""
     noise: Noise = Noise()
     """Noise at the converter's input."""
-    sampling_rate: Annotated[Frequency, Field(gt=0)] = 1000.0
+    sampling_rate: Positive[Frequency] = 1000.0
     """Samples per second of each channel."""
     converter: Converter = Converter()
     """Range and resolution."""

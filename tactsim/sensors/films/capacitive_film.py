@@ -15,7 +15,7 @@ from tactsim.interfaces import SensorFilm
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.results.quantity import Quantity
 from tactsim.sensors.films.force_history import checked_forces, checked_signal, checked_times
-from tactsim.units import Area, Length, Pressure, format_quantity
+from tactsim.units import Area, Length, Positive, Pressure, format_quantity
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12
 """In F/m: CODATA 2018, doi:10.1103/RevModPhys.93.025010."""
@@ -52,13 +52,13 @@ class CapacitiveFilm(SensorFilm):
     signal: ClassVar[Literal["conductance", "capacitance"]] = "capacitance"
     unit: ClassVar[Literal["S", "F"]] = "F"
     kind: Literal["capacitive_film"] = "capacitive_film"
-    active_area: Annotated[Area, Field(gt=0)] | None = None
+    active_area: Positive[Area] | None = None
     """Area of the plates; null is 15 mm x 15 mm."""
-    thickness: Annotated[Length, Field(gt=0)] = 0.5e-3
+    thickness: Positive[Length] = 0.5e-3
     """Distance of the plates without force."""
     relative_permittivity: Annotated[float, Field(ge=1, le=1e5)] = 2.8
     """Of the dielectric."""
-    shear_modulus: Annotated[Pressure, Field(gt=0)] = MEASURED_STRESS / (MEASURED_STRETCH - MEASURED_STRETCH**-2)
+    shear_modulus: Positive[Pressure] = MEASURED_STRESS / (MEASURED_STRETCH - MEASURED_STRETCH**-2)
     """Of the dielectric."""
 
     @classmethod

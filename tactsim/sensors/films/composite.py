@@ -3,14 +3,26 @@
 from __future__ import annotations
 
 import math
-from typing import Annotated, Any, Self
+from typing import Any, Self
 
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.model import FrozenModel
 from tactsim.sensors.films.thermogravimetry import FillerFraction, Thermogravimetry
 from tactsim.sensors.films.tunnelling import particle_separation, tunnelling_decay
-from tactsim.units import Area, Energy, Force, Length, Pressure, PressurePerForce, Resistance, Viscosity, ViscosityPerForce
+from tactsim.units import (
+    Area,
+    Energy,
+    Force,
+    Length,
+    NonNegative,
+    Positive,
+    Pressure,
+    PressurePerForce,
+    Resistance,
+    Viscosity,
+    ViscosityPerForce,
+)
 
 CREEP_COEFFICIENTS = ("instantaneous", "delayed", "viscosity")
 """Names of the coefficients of the creep: E0 in Pa, E1 in Pa and mu1 in Pa s."""
@@ -19,9 +31,9 @@ CREEP_COEFFICIENTS = ("instantaneous", "delayed", "viscosity")
 class ModulusLine(FrozenModel):
     """A modulus of the standard linear solid over the force, E(F) = slope F + intercept."""
 
-    slope: Annotated[PressurePerForce, Field(ge=0)]
+    slope: NonNegative[PressurePerForce]
     """Per newton on the reference area."""
-    intercept: Annotated[Pressure, Field(gt=0)]
+    intercept: Positive[Pressure]
     """Without force."""
 
     def at(self, force: Any) -> Any:
@@ -32,9 +44,9 @@ class ModulusLine(FrozenModel):
 class ViscosityLine(FrozenModel):
     """The viscosity of the standard linear solid over the force, mu(F) = slope F + intercept."""
 
-    slope: Annotated[ViscosityPerForce, Field(ge=0)]
+    slope: NonNegative[ViscosityPerForce]
     """Per newton on the reference area."""
-    intercept: Annotated[Viscosity, Field(gt=0)]
+    intercept: Positive[Viscosity]
     """Without force."""
 
     def at(self, force: Any) -> Any:
@@ -47,13 +59,13 @@ class Composite(FrozenModel):
 
     volume_fraction: FillerFraction
     """Of the filler: a number, or ``{sample_mass: 21.158 mg, filler_mass: 4.2083 mg, ...}`` of a thermogravimetric analysis."""
-    particle_diameter: Annotated[Length, Field(gt=0)]
+    particle_diameter: Positive[Length]
     """Of the filler."""
-    barrier: Annotated[Energy, Field(gt=0)]
+    barrier: Positive[Energy]
     """Potential barrier between two particles."""
-    initial_resistance: Annotated[Resistance, Field(gt=0)]
+    initial_resistance: Positive[Resistance]
     """R0 of the unstrained composite on the reference area."""
-    contact_resistance: Annotated[Resistance, Field(gt=0)]
+    contact_resistance: Positive[Resistance]
     """Of both contacts at a force of 1 N; it falls with the root of the force, whatever the area."""
     instantaneous: ModulusLine
     """E0 over the force."""
@@ -61,9 +73,9 @@ class Composite(FrozenModel):
     """E1 over the force."""
     viscosity: ViscosityLine
     """mu1 over the force."""
-    reference_area: Annotated[Area, Field(gt=0)]
+    reference_area: Positive[Area]
     """Active area of the sensor on which the numbers were measured."""
-    largest_force: Annotated[Force, Field(gt=0)]
+    largest_force: Positive[Force]
     """Largest force on the reference area for which the lines over the force were measured."""
     source: str
     """Where the numbers come from."""

@@ -11,11 +11,10 @@ integrated with the coefficients of its middle (exponential midpoint rule, secon
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Annotated, ClassVar, Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike
-from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
@@ -27,7 +26,7 @@ from tactsim.sensors.films.composite_library import AnyComposite, named_composit
 from tactsim.sensors.films.force_history import checked_forces, checked_signal, checked_times
 from tactsim.sensors.films.thermogravimetry import Thermogravimetry
 from tactsim.sensors.films.tunnelling import relative_resistance, tunnelling_decay
-from tactsim.units import Area, format_quantity
+from tactsim.units import Area, Positive, format_quantity
 
 HOLM = 100.0
 """Largest force in N of Holm's contact resistance (thesis, before eq. 2.1.12)."""
@@ -59,7 +58,7 @@ class Film(SensorFilm):
     kind: Literal["film"] = "film"
     composite: AnyComposite = named_composite("lingstat_identified")
     """Name of a shipped composite, or its numbers."""
-    active_area: Annotated[Area, Field(gt=0)] | None = None
+    active_area: Positive[Area] | None = None
     """Area that carries the force; null is the composite's reference area."""
 
     @classmethod

@@ -9,7 +9,7 @@ from pydantic import Discriminator, Field, Tag, model_validator
 
 from tactsim.model import FrozenModel
 from tactsim.sensors.films.tunnelling import LOOSEST_PACKING, volume_fraction
-from tactsim.units import Density, Mass, format_quantity
+from tactsim.units import Density, Mass, NonNegative, Positive, format_quantity
 
 
 class Thermogravimetry(FrozenModel):
@@ -24,19 +24,19 @@ class Thermogravimetry(FrozenModel):
     Source: thesis, section 2.3, whose numbers are the defaults of the densities.
     """
 
-    sample_mass: Annotated[Mass, Field(gt=0)]
+    sample_mass: Positive[Mass]
     """Mass of the sample before the analysis."""
-    filler_mass: Annotated[Mass, Field(gt=0)]
+    filler_mass: Positive[Mass]
     """Mass of what remains."""
-    mass_resolution: Annotated[Mass, Field(ge=0)] = 1e-10
+    mass_resolution: NonNegative[Mass] = 1e-10
     """Last digit of the balance; by default that of the thesis, 0.0001 mg."""
-    filler_density: Annotated[Density, Field(gt=0)] = 560.0
+    filler_density: Positive[Density] = 560.0
     """Density of the filler. The thesis takes 0.56 g/cm^3, the bulk density of the powder; solid carbon has 1.8 g/cm^3 (E27)."""
-    matrix_density: Annotated[Density, Field(gt=0)] = 910.0
+    matrix_density: Positive[Density] = 910.0
     """Density of the matrix."""
-    filler_density_deviation: Annotated[Density, Field(ge=0)] = 0.0
+    filler_density_deviation: NonNegative[Density] = 0.0
     """Standard uncertainty of the density of the filler."""
-    matrix_density_deviation: Annotated[Density, Field(ge=0)] = 0.0
+    matrix_density_deviation: NonNegative[Density] = 0.0
     """Standard uncertainty of the density of the matrix."""
 
     @model_validator(mode="after")

@@ -12,7 +12,7 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.model import FrozenModel
-from tactsim.units import Force
+from tactsim.units import Force, Positive
 
 UNTRIGGERED = -1
 """Index of a recording in which the small sensor never exceeded its level."""
@@ -23,7 +23,7 @@ class TriggerLevel(FrozenModel):
 
     multiple: Annotated[float, Field(gt=0, le=1e3)] = 6.0
     """Level as so many times the standard deviation of the small sensor's filtered reading at rest."""
-    force: Annotated[Force, Field(gt=0)] | None = None
+    force: Positive[Force] | None = None
     """A fixed level, which replaces the multiple."""
 
     def above_rest(self, rest: Array, step: float) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from tactsim.experiments.threshold.catheter_tip import CatheterTip
 from tactsim.interfaces import drawing, quantity
 from tactsim.interfaces.run import returned_by, run_within_another
 from tactsim.results.result import Result
+from tactsim.units import NonNegative
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.inputs import Inputs
 
@@ -39,7 +40,7 @@ def catheter_search(
     sensors: Sensors,
     places: Places = 12,
     touches: Touches = 20,
-    seed: Annotated[int, Field(ge=0)] = 1,
+    seed: NonNegative[int] = 1,
 ) -> float:
     """How well a tip with so many sensors finds a tissue, over places where its circle of sensors meets it; dimensionless.
 

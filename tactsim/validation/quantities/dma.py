@@ -42,7 +42,7 @@ def dma_signal_error(
     cycles: Cycles = 20.0,
     noise: NoisePart = 0.0,
     hold: Hold = None,
-    seed: Annotated[int, Field(ge=0)] = 1,
+    seed: NonNegative[int] = 1,
 ) -> float:
     """Modulus from load and displacement signals of Table 4.1 against its own E*, dimensionless.
 

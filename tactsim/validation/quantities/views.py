@@ -12,7 +12,7 @@ from tactsim.interfaces import drawing, quantity
 from tactsim.localization.bands import GREY_LEVELS, Form, band_image, band_intensities, element_positions, inserted_elements
 from tactsim.localization.section_image import lump_rows, section_image
 from tactsim.localization.views import SHAPE, Join, joined, pair_images, views
-from tactsim.units import NonNegative
+from tactsim.units import NonNegative, Positive
 from tactsim.validation.curves import Data, Title
 
 Place = Annotated[int, Field(ge=1)]
@@ -137,7 +137,7 @@ def band_pictures(
     title: Title,
     signals: Annotated[tuple[NonNegative[float], ...], Field(min_length=2)],
     pixels: Annotated[tuple[int, ...], Field(min_length=1)] = (7, 60, 100),
-    normalising: Annotated[float, Field(gt=0)] = 1.0,
+    normalising: Positive[float] = 1.0,
 ) -> Data:
     """Form ``images``: the one-dimensional pictures of Appendix .1, the grey levels 0 to 255 of eqs. .1.1 and .1.4.
 

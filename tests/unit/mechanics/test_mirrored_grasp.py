@@ -54,7 +54,7 @@ def assert_same(one, part, whole):
     """Up to what the penetration and the slip that are allowed leave open, by which the first half of the way differs, too."""
     assert part.load == pytest.approx(whole.load, abs=TOLERANCE)
     for mine, asked in zip(one.space.split(part.unknowns), one.space.split(whole.unknowns), strict=True):
-        assert np.linalg.norm(mine - asked) < 1e-3 * np.linalg.norm(asked)
+        assert np.linalg.norm(mine - asked) < 3e-3 * np.linalg.norm(asked)
     for mine, asked in zip(part.contacts, whole.contacts, strict=True):
         total = asked.state.traction @ asked.surface.points.weights
         assert_allclose(mine.state.traction @ mine.surface.points.weights, total, rtol=0, atol=1e-4 * np.abs(total).max())

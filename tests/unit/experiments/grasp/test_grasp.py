@@ -64,13 +64,13 @@ def pressed(*pieces, control="displacement"):
     return {"control": control, "pieces": list(pieces)}
 
 
-@pytest.fixture
-def tube_file(tmp_path):
+@pytest.fixture(scope="module")
+def tube_file(tmp_path_factory):
     """A block with a ragged tube along x, as another program would write it."""
     block = structured_block(SIZE, (1, 8, 4), [Tube.model_validate(TUBE)])
     mesh, count = block.mesh, block.mesh.corner_count
     cells = meshio.CellBlock("tetra", mesh.elements[:, :4])
-    path = tmp_path / "tube.vtu"
+    path = tmp_path_factory.mktemp("meshes") / "tube.vtu"
     meshio.Mesh(1e3 * mesh.nodes[:count], [cells], cell_data={"region": [mesh.regions + 5]}).write(path)
     return {"kind": "file", "path": str(path), "unit": "mm", "regions": {"5": 0, "6": 1}}
 

@@ -33,6 +33,11 @@ def run(**changes):
     return tip(**changes).run()
 
 
+@pytest.fixture(scope="module")
+def usual():
+    return run()
+
+
 def noisy(white):
     return ThresholdSensor(chain=SignalChain(noise=Noise(white=white), low_pass=SignalChain().low_pass))
 
@@ -102,21 +107,20 @@ def test_between_equally_hard_tissues_no_answer_is_wrong():
     assert run(surface=bands(20e3, 20e3, 20e3), sensor=noisy(5e-3), trials=50).quantities["chance_of_wrong"].value == 0
 
 
-def test_touches_without_a_usable_threshold_are_reported():
+def test_touches_without_a_usable_threshold_are_reported(usual):
     assert any("touches report no usable threshold" in words for words in run(sensor=noisy(1.0)).warnings)
-    assert not any("touches report no usable threshold" in words for words in run().warnings)
+    assert not any("touches report no usable threshold" in words for words in usual.warnings)
     assert tip(tilt="30 deg").tilt == pytest.approx(np.pi / 6)
 
 
-def test_a_tilted_tip_leaves_sensors_without_contact():
+def test_a_tilted_tip_leaves_sensors_without_contact(usual):
     result = run(tilt=0.2, tilt_direction=np.pi, press=0.8e-3)
     assert result.scene.state == ("no contact", "threshold not reached", "measured", "threshold not reached")
     assert result.quantities["reported_force"].value[0] is None
     assert result.quantities["valid_rate"].value[:2] == [0, 0]
     assert result.quantities["chance_of_wrong"].value == 1, "the hardest place is not touched"
     assert any("sensor 1: no contact" in warning for warning in result.warnings)
-    flat = run()
-    assert flat.scene.state == ("measured",) * 4
+    assert usual.scene.state == ("measured",) * 4
     np.testing.assert_allclose(RING.lag(0.2, np.pi), np.tan(0.2) * RING.radius * np.array([2, 1, 0, 1]))
 
 
@@ -127,20 +131,19 @@ def test_a_tip_that_is_not_pressed_enough_has_no_answer():
     assert "no sensor found" in " ".join(text.get_text() for text in CatheterTipFigures().figure(result).findobj(Text))
 
 
-def test_the_same_seed_gives_the_same_result():
-    assert run().steps == run().steps
-    assert run().steps != run(seed=2).steps
+def test_the_same_seed_gives_the_same_result(usual):
+    assert run().steps == usual.steps
+    assert run(seed=2).steps != usual.steps
 
 
-def test_figure():
-    result = run()
-    drawings = figures_for(result)
+def test_figure(usual):
+    drawings = figures_for(usual)
     assert list(drawings) == ["catheter_tip.png"]
     assert drawings["catheter_tip.png"]().startswith(b"\x89PNG")
-    words = " ".join(text.get_text() for text in CatheterTipFigures().figure(result).findobj(Text))
+    words = " ".join(text.get_text() for text in CatheterTipFigures().figure(usual).findobj(Text))
     for label in ("hardest at sensor 1", "leaflet", "annulus", "atrium", "threshold pressure in kPa"):
         assert label in words
-    best, second = sorted((one for one in result["reported_pressure"].value if one is not None), reverse=True)[:2]
+    best, second = sorted((one for one in usual["reported_pressure"].value if one is not None), reverse=True)[:2]
     assert f"the second reads {100 * (1 - second / best):.2g} % less" in words
     none = run(press=0.05e-3)
     assert figures_for(none)["catheter_tip.png"]().startswith(b"\x89PNG")
