@@ -19,6 +19,7 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.errors import ConvergenceError
+from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
 from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem, resolved
 from tactsim.fem.solvers.pardiso import SinglePardiso
@@ -77,7 +78,7 @@ def first_system(cells: int):  # type: ignore[no-untyped-def]
     soft, hard = MooneyRivlin2(c10=1000.0, c01=685.0), MooneyRivlin2(c10=8000.0, c01=2000.0)
     jaws = [Jaw(side=side, width=0.03, depth=0.03, fillet=1e-3) for side in faces]
     model = GraspModel(mesh, [soft, hard], faces, jaws=jaws, offsets=np.tile(SIZE[:2] / 2, (2, 1)))
-    model.problem.solver = Recorder()
+    model.problem = Problem(model.body, np.zeros(0, int), solver=Recorder(), options=model.problem.options)
     state = model.start(Coulomb(friction=0.6), Regularisation(1e-6, soft.shear_modulus, switch_length=1e-3))
     try:
         model.equilibrium(state, CLOSING, state.unknowns)

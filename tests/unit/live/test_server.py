@@ -111,7 +111,7 @@ def test_a_result_arrives_with_its_numbers_pictures_and_estimate(grasp: Content)
         assert len(scene["times"]) == 4
         np.testing.assert_allclose(frame["forces"], taxel_forces()[-1], rtol=1e-6)
         assert (frame["time"], frame["closing"], frame["step"]) == (1.0, 1.0, 3)
-        assert frame["pictures"].max() == 255
+        assert frame["pictures"].max() >= 254, "the brightest place lies between the pixels"
         assert page.last["shapes"]["inclusions"][0]["name"] == "sphere 1"
         assert page.last["estimate"]["fault"] == ""
         assert page.last["estimate"]["errors"][0].startswith("Off by")

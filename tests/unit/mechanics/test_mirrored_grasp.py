@@ -29,10 +29,10 @@ COARSE = BlockMeshSettings(size=8e-3, edge_size=3e-3, growth=1)
 MATERIAL = NeoHookean(c10=1000.0, bulk_modulus=2e6)
 
 
-def model(shift=0.0):
+def model(shift=0.0, width=40e-3):
     """A plain block between jaws, the upper one moved along x by ``shift``."""
     block = graded_block(SIZE, (), COARSE)
-    jaws = [Jaw(width=40e-3, depth=40e-3, fillet=1e-3, side=side) for side in JAWS]
+    jaws = [Jaw(width=width, depth=40e-3, fillet=1e-3, side=side) for side in JAWS]
     offsets = np.array([[SIZE[0] / 2 + shift, SIZE[1] / 2], [SIZE[0] / 2, SIZE[1] / 2]])
     return GraspModel(block.mesh, [MATERIAL], block.facets, jaws=jaws, offsets=offsets)
 
@@ -57,7 +57,7 @@ def assert_same(one, part, whole):
         assert np.linalg.norm(mine - asked) < 3e-3 * np.linalg.norm(asked)
     for mine, asked in zip(part.contacts, whole.contacts, strict=True):
         total = asked.state.traction @ asked.surface.points.weights
-        assert_allclose(mine.state.traction @ mine.surface.points.weights, total, rtol=0, atol=1e-4 * np.abs(total).max())
+        assert_allclose(mine.state.traction @ mine.surface.points.weights, total, rtol=0, atol=5e-4 * np.abs(total).max())
 
 
 @pytest.mark.parametrize("force", [None, 0.5])
@@ -83,7 +83,7 @@ def test_tissue_that_relaxes_is_mirrored_too():
 
 
 def test_a_jaw_aside_is_no_image_and_the_whole_is_solved():
-    aside = model(shift=4e-3)
+    aside = model(shift=4e-3, width=16e-3)
     solver = aside.problem.solver
-    assert_same(aside, grasped(aside), grasped(solved_whole(model(shift=4e-3))))
+    assert_same(aside, grasped(aside), grasped(solved_whole(model(shift=4e-3, width=16e-3))))
     assert aside.problem.solver is not solver
