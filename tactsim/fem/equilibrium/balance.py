@@ -89,7 +89,7 @@ class Balance:
         """
         interfaces, control = self.forces.interfaces, self.forces.load_control
         internal = self.body.residual(unknowns, kinematics)
-        largest = self.constraints.largest(internal[: self.body.space.displacement_size])
+        largest = float(np.abs(self.constraints.counted(internal[: self.body.space.displacement_size])).max())
         internal -= self.forces.nodal(self.body.space.split(unknowns)[0], self.body.space.size)
         moved = point_displacements(self.body, unknowns, interfaces, control, rigid_displacement)
         tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
@@ -105,15 +105,16 @@ class Balance:
     ) -> tuple[float, float]:
         """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
         error over the mean nodal volume; and the root of the sum of all squared unbalanced forces in N."""
-        residual, split = internal.copy(), self.body.space.displacement_size
-        scale = max(largest, self.constraints.largest(internal[:split]))
+        residual, split, counted = internal.copy(), self.body.space.displacement_size, self.constraints.counted
+        scale = max(largest, float(np.abs(counted(internal[:split])).max()))
         for interface, traction, lost in zip(self.forces.interfaces, tractions, rounding, strict=True):
             force = interface.surface.force(traction)
-            scale = max(scale, self.constraints.largest(force))
+            scale = max(scale, float(np.abs(counted(force)).max()))
             residual -= force
             noise = noise + interface.surface.largest_force(lost)[:split]
-        residual = self.constraints.free(residual)
-        unbalanced = (np.abs(residual[:split]) / np.maximum(scale, noise / self.tolerance)).max()
+        residual = counted(self.constraints.free(residual))
+        measure = np.maximum(scale, counted(noise) / self.tolerance)  # zero where nothing acts and the force does not count
+        unbalanced = np.divide(np.abs(residual[:split]), measure, out=np.zeros(split), where=measure > 0).max()
         relative = float(max(unbalanced, np.abs(residual[split:]).max() / self.scales.volume))
         return relative, float(np.linalg.norm(residual[:split]))
 

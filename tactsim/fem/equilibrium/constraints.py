@@ -11,11 +11,11 @@ from tactsim.fem.assembly.pattern import Pattern
 class Constraints:
     """Unknowns with prescribed values, which the initial guess holds and Newton does not change.
 
-    ``reactions_count`` says whether the forces that hold them are among those that residuals are measured by.
+    ``counts`` (size,) says how many times each unknown's force counts where residuals are measured; by default once.
     """
 
-    def __init__(self, fixed: Array, pattern: Pattern, *, reactions_count: bool = True):
-        self.fixed, self.reactions_count = np.unique(fixed), reactions_count
+    def __init__(self, fixed: Array, pattern: Pattern, *, counts: Array | None = None):
+        self.fixed, self._counts = np.unique(fixed), counts
         held = np.zeros(pattern.size, bool)
         held[self.fixed] = True
         rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
@@ -34,7 +34,6 @@ class Constraints:
         out[self.fixed] = 0.0
         return out
 
-    def largest(self, forces: Array) -> float:
-        """Largest of the forces (size,) or (m,) of the first unknowns that residuals are measured by."""
-        counted = forces if self.reactions_count else np.delete(forces, self.fixed[self.fixed < len(forces)])
-        return float(np.abs(counted).max())
+    def counted(self, forces: Array) -> Array:
+        """Forces (size,), or (m,) of the first unknowns, as often as they count."""
+        return forces if self._counts is None else forces * self._counts[: len(forces)]

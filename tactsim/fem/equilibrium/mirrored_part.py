@@ -66,6 +66,13 @@ class MirroredPart:
         node, plane = np.nonzero(self.on_planes)
         return np.sort(self.body.space.dim * node + np.array(self.axes)[plane])
 
+    @cached_property
+    def counts(self) -> Array:
+        """What makes forces on the part's unknowns (size',) those on the whole's: zero across planes, on them all their sides."""
+        counts = self._sides.prod(axis=1).astype(float)
+        counts[self.held] = 0.0
+        return counts
+
     def unfolded(self, unknowns: Array) -> Array:
         """The unknowns of the whole (size,) of those of the part (size',)."""
         u, p = self.body.space.split(unknowns)

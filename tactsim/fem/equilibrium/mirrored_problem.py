@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 
 import numpy as np
 
@@ -18,10 +17,9 @@ from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
 from tactsim.fem.solvers.solver_choice import solver_for
 
-SIDES = 2.0
-"""Unbalanced force at a node on a plane over that of one side of it: by so much the whole's residual may exceed the part's."""
-UNLIKE = 1.25 * SIDES
-"""Residual of the whole over what was asked of the part, above which the solution of the part is none of the whole."""
+UNLIKE = 2.0
+"""Residual of the whole over what was asked of the part, above which the solution of the part is none of the whole: both are
+measured alike, up to round-off."""
 
 
 class MirroredProblem(Problem):
@@ -38,9 +36,8 @@ class MirroredProblem(Problem):
     def __init__(self, part: MirroredPart, *, options: NewtonOptions):
         super().__init__(part.whole, np.zeros(0, int), solver=solver_for(part.body), options=options)
         self._part: MirroredPart | None = part
-        finer = replace(options, tolerance=options.tolerance / SIDES)
-        self._on_part = Problem(part.body, part.held, solver=self.solver, options=finer)
-        self._on_part.constraints = Constraints(part.held, part.body.pattern, reactions_count=False)
+        self._on_part = Problem(part.body, part.held, solver=self.solver, options=options)
+        self._on_part.constraints = Constraints(part.held, part.body.pattern, counts=part.counts)
 
     def solve(
         self,
