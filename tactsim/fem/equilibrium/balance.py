@@ -114,7 +114,7 @@ class Balance:
             noise = noise + interface.surface.largest_force(lost)[:split]
         residual = counted(self.constraints.free(residual))
         measure = np.maximum(scale, counted(noise) / self.tolerance)  # zero where nothing acts and the force does not count
-        unbalanced = np.divide(np.abs(residual[:split]), measure, out=np.zeros(split), where=measure > 0).max()
+        unbalanced = np.divide(np.abs(residual[:split]), measure, out=np.zeros(split), where=measure != 0).max()
         relative = float(max(unbalanced, np.abs(residual[split:]).max() / self.scales.volume))
         return relative, float(np.linalg.norm(residual[:split]))
 
