@@ -13,6 +13,7 @@ from numpy.testing import assert_allclose
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
+from tactsim.experiments.grasp.path import FIRST_PART
 from tactsim.fem.assembly.body import RelaxationStep
 from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem
 from tactsim.fem.equilibrium.newton import Problem
@@ -24,7 +25,8 @@ from tactsim.mechanics.models.block_model import START_PATIENCE, GraspModel
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.block import graded_block
 
-SIZE, CLOSING, TOLERANCE = (20e-3, 16e-3, 10e-3), 0.3e-3, 1e-8
+pytestmark = pytest.mark.usefixtures("one_thread")
+SIZE, CLOSING, TOLERANCE = (20e-3, 16e-3, 10e-3), 0.3e-3, 1e-7
 COARSE = BlockMeshSettings(size=8e-3, edge_size=3e-3, growth=1)
 MATERIAL = NeoHookean(c10=1000.0, bulk_modulus=2e6)
 
@@ -46,8 +48,8 @@ def solved_whole(one):
 
 def grasped(one, **action):
     start = one.start(Coulomb(friction=0.4), Augmentation(TOLERANCE, softest=4e3, switch_length=5e-3, softness=1e-5))
-    half = one.equilibrium(start, CLOSING / 2, one.compressed(CLOSING / 2))
-    return one.equilibrium(half, CLOSING, 2 * half.unknowns, **action)
+    half = one.equilibrium(start, CLOSING / 2, one.compressed(FIRST_PART * CLOSING / 2))
+    return one.equilibrium(half, CLOSING, half.unknowns, **action)
 
 
 def assert_same(one, part, whole):
