@@ -150,6 +150,10 @@ class GraspRecord(ContactRecord[GraspModel]):
             f"least quality {block.quality.minimum:.2g}, made in {block.seconds:.1f} s"
         )
         assumptions += smaller_elements(block)
+        if (copies := self.model.problem.copies) > 1:
+            assumptions.append(
+                f"the grasp is its own mirror image: one part of {copies} is solved, and every solution looked at in the whole"
+            )
         assumptions.append(penetration_allowed(experiment.tolerance))
         if "last" in self._kept and (last := self._kept["last"][1].contact.regularisation.tolerance) < experiment.tolerance:
             assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")

@@ -95,7 +95,7 @@ class MirroredPart:
             control = PrescribedForce(tuple(control.directions[number] for number in touched), control.force / self.copies)
         return ExternalForces(
             tuple(forces.interfaces[number].of_part(surface.assembly, surface.points) for number, surface in touched.items()),
-            tuple(self._loads.setdefault(load, _LoadOnPart(load, self)) for load in forces.loads),
+            tuple(_LoadOnPart(load, self) for load in forces.loads),
             None if forces.nodal_force is None else self.shared(forces.nodal_force),
             control,
         )
@@ -122,10 +122,6 @@ class MirroredPart:
         """What adds to the entries of the part's tangent of ``data`` that adds to those of the whole's."""
         places, sides = self._entries
         return data[places] / sides
-
-    @cached_property
-    def _loads(self) -> dict[FollowerLoad, _LoadOnPart]:
-        return {}
 
     @cached_property
     def _surfaces(self) -> dict[SurfaceAssembly, SurfacePart | None]:

@@ -39,6 +39,11 @@ class MirroredProblem(Problem):
         self._on_part = Problem(part.body, part.held, solver=self.solver, options=options)
         self._on_part.constraints = Constraints(part.held, part.body.pattern, counts=part.counts)
 
+    @property
+    def copies(self) -> int:  # type: ignore[override]  # constant elsewhere
+        """Of the part; one once the whole is solved."""
+        return 1 if self._part is None else self._part.copies
+
     def solve(
         self,
         guess: Array,

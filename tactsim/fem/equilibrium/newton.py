@@ -61,6 +61,9 @@ class Equilibrium:
 class Problem:
     """A body with fixed unknowns; keeps the sparse solver between solutions."""
 
+    copies = 1
+    """How many parts like the one that is solved make up the body."""
+
     def __init__(self, body: Body, fixed: Array, *, solver: LinearSolver | None = None, options: NewtonOptions | None = None):
         self.body = body
         self.constraints = Constraints(fixed, body.pattern)
