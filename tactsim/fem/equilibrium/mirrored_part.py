@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -18,6 +19,8 @@ from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
 
 SAME_PLACE = 1e-9
 """Distance of a node from its image's place over the body's size up to which it is that image: far below any cell."""
+SAME_FORCE = 1e-6
+"""Difference of a nodal force from its image over the largest, up to which it is that image: far above round-off."""
 
 
 @dataclass(frozen=True)
@@ -85,6 +88,10 @@ class MirroredPart:
     def shared(self, forces: Array) -> Array:
         """What acts on the part (size',) of nodal forces on the whole (size,): at nodes on a plane each side bears half."""
         return forces[self._unknowns] / self._sides.prod(axis=1)
+
+    def mirrors(self, forces: Array) -> bool:
+        """Whether nodal forces on the whole (size,) are their own mirror image."""
+        return bool(np.abs(self.unfolded(self.folded(forces)) - forces).max() <= SAME_FORCE * np.abs(forces).max())
 
     def forces(self, forces: ExternalForces) -> ExternalForces:
         """What acts on the part of what acts on the whole; interfaces whose surface lies beside the part are left out."""
@@ -178,15 +185,14 @@ class _LoadOnPart:
         return self._part.signs * displacement[self._part.images]
 
 
-def mirrored_part(body: Body) -> MirroredPart | None:
+def mirrored_part(body: Body, axes: Sequence[int] = (0, 1, 2)) -> MirroredPart | None:
     """The smallest part of a body between middle planes that mirror its nodes, elements and materials; None without such a plane.
 
-    What acts on the body is not looked at.
+    ``axes`` are those across which a plane is looked for. What acts on the body is not looked at.
     """
     part = None
-    for axis in range(body.space.dim):
-        axes = (axis,) if part is None else (*part.axes, axis)
-        part = _part(body, axes) or part
+    for axis in axes:
+        part = _part(body, (axis,) if part is None else (*part.axes, axis)) or part
     return part
 
 

@@ -87,7 +87,9 @@ class MirroredProblem(Problem):
         relaxation: RelaxationStep | None,
         coarse: float,
     ) -> Equilibrium | None:
-        """The equilibrium of the part, unfolded; None if the whole is not in equilibrium there."""
+        """The equilibrium of the part, unfolded; None if loads are not mirrored, or the whole is not in equilibrium there."""
+        if not part.mirrors(forces.nodal(self.body.space.split(guess)[0], self.body.space.size)):
+            return None
         on_part = part.forces(forces)
         solution = self._on_part.solve(
             part.folded(guess),

@@ -16,7 +16,7 @@ from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.regularising_springs import RegularisingSprings
 from tactsim.fem.assembly.space import FACET_POINTS, TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
-from tactsim.fem.equilibrium.mirrored_part import mirrored_part
+from tactsim.fem.equilibrium.mirrored_part import SAME_PLACE, mirrored_part
 from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
@@ -82,10 +82,26 @@ class GraspModel:
 
     def _posed(self, options: NewtonOptions) -> Problem:
         """The problem of the block, or of a part of it that stands for the whole."""
-        part = mirrored_part(self.body)
+        part = mirrored_part(self.body, [axis for axis in range(3) if self._jaws_mirror(axis)])
         if part is not None:
             return MirroredProblem(part, options=options)
         return Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=options)
+
+    def _jaws_mirror(self, axis: int) -> bool:
+        """Whether the middle plane across an axis mirrors the jaws where they first touch, each onto itself or onto the other."""
+        low, high = self.mesh.nodes.min(axis=0), self.mesh.nodes.max(axis=0)
+        for side, other in zip(JAWS, reversed(JAWS) if axis == 2 else JAWS, strict=True):
+            try:
+                here, there = (self.touching_place(one)[:, None] for one in (side, other))
+            except InputError:  # which the start says
+                return False
+            mirrored = self.references[side].copy()
+            mirrored[axis] = low[axis] + high[axis] - mirrored[axis]
+            gaps = self.jaws[side].signed_distance(self.references[side] - here)[0]
+            images = self.jaws[other].signed_distance(mirrored - there)[0]
+            if np.abs(gaps - images).max() > SAME_PLACE * float((high - low).max()):
+                return False
+        return True
 
     def touching_place(self, side: str) -> Array:
         """Place (3,) in m of a jaw's middle at which it first touches the undeformed block.

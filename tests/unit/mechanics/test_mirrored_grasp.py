@@ -31,10 +31,11 @@ COARSE = BlockMeshSettings(size=8e-3, edge_size=3e-3, growth=1)
 MATERIAL = NeoHookean(c10=1000.0, bulk_modulus=2e6)
 
 
-def model(shift=0.0, width=40e-3):
-    """A plain block between jaws, the upper one moved along x by ``shift``."""
+def model(shift=0.0, width=40e-3, tilt=0.0):
+    """A plain block between jaws, the upper one moved along x by ``shift`` and turned about y by ``tilt``."""
     block = graded_block(SIZE, (), COARSE)
-    jaws = [Jaw(width=width, depth=40e-3, fillet=1e-3, side=side) for side in JAWS]
+    turned = {"upper": tilt, "lower": 0.0}
+    jaws = [Jaw(width=width, depth=40e-3, fillet=1e-3, side=side, tilt_y=turned[side]) for side in JAWS]
     offsets = np.array([[SIZE[0] / 2 + shift, SIZE[1] / 2], [SIZE[0] / 2, SIZE[1] / 2]])
     return GraspModel(block.mesh, [MATERIAL], block.facets, jaws=jaws, offsets=offsets)
 
@@ -84,8 +85,12 @@ def test_tissue_that_relaxes_is_mirrored_too():
     assert mirrored.problem.solver is solver, "the whole was not solved"
 
 
-def test_a_jaw_aside_is_no_image_and_the_whole_is_solved():
-    aside = model(shift=4e-3, width=16e-3)
-    solver = aside.problem.solver
-    assert_same(aside, grasped(aside), grasped(solved_whole(model(shift=4e-3, width=16e-3))))
-    assert aside.problem.solver is not solver
+@pytest.mark.parametrize(("tilt", "shift", "copies"), [(0.0, 0.0, 8), (0.0, 4e-3, 2), (0.02, 0.0, 2)])
+def test_planes_mirror_the_jaws_too(tilt, shift, copies):
+    assert model(shift=shift, width=16e-3, tilt=tilt).problem.copies == copies
+
+
+def test_a_jaw_aside_is_grasped_as_the_whole():
+    aside, whole = (model(shift=4e-3, width=16e-3) for _ in range(2))
+    assert_same(aside, grasped(aside), grasped(solved_whole(whole)))
+    assert aside.problem.copies == 2, "the plane across y still mirrors it"
