@@ -74,10 +74,11 @@ def plane_cut(frame: FieldFrame, axis: int, level: float, values: Array) -> Plan
     crossed = _crossed(nodal_values, elements)
     cut_values = values[elements[crossed]] if values.ndim == 1 else _quadratic_values(values[crossed])
     cut = _cut_tetrahedra(_divided(np.concatenate([nodal_values[elements[crossed]], cut_values[:, :, None]], axis=2)))
-    pieces, number = _cut_triangles(_divided(nodal_values[faces]))
+    near = _crossed(nodal_values, faces)
+    pieces, number = _cut_triangles(_divided(nodal_values[faces[near]]))
     longest = np.linalg.norm(cut[:, :, 1:3] - np.roll(cut[:, :, 1:3], 1, axis=1), axis=2).max(axis=1, initial=0.0)
     whole = np.abs(np.linalg.det(cut[:, 1:, 1:3] - cut[:, :1, 1:3])) > SLIVER * np.ptp(nodes) * longest
-    return PlaneCut(cut[whole, :, 1:3], cut[whole, :, 3], pieces[:, :, 1:3], between[number // PARTS**2])
+    return PlaneCut(cut[whole, :, 1:3], cut[whole, :, 3], pieces[:, :, 1:3], between[near[number // PARTS**2]])
 
 
 def _crossed(nodal_values: Array, elements: Array) -> Array:
@@ -97,7 +98,8 @@ def _divided(nodal_values: Array) -> Array:
     flat = nodal_values.shape[1] == 6
     corners = _TRIANGLES if flat else _TETRAHEDRA
     shapes = _quadratic(corners, EDGES[2 if flat else 3])
-    return np.einsum("pka,eac->epkc", shapes, nodal_values).reshape(-1, corners.shape[1], nodal_values.shape[2])
+    parts = shapes.reshape(-1, shapes.shape[-1]) @ nodal_values
+    return parts.reshape(-1, corners.shape[1], nodal_values.shape[2])
 
 
 def _quadratic(corners: Array, edges: Sequence[tuple[int, int]]) -> Array:

@@ -95,7 +95,7 @@ class MirroredPart:
 
     def forces(self, forces: ExternalForces) -> ExternalForces:
         """What acts on the part of what acts on the whole; interfaces whose surface lies beside the part are left out."""
-        surfaces = [self.surface(interface.surface) for interface in forces.interfaces]
+        surfaces = [self._surface(interface.surface) for interface in forces.interfaces]
         touched = {number: surface for number, surface in enumerate(surfaces) if surface is not None}
         control = forces.load_control
         if control is not None:
@@ -111,7 +111,7 @@ class MirroredPart:
         """A step of time of the part's materials."""
         return None if step is None else RelaxationStep(step.scale[self.elements], step.stress[:, self.elements])
 
-    def surface(self, surface: SurfaceAssembly) -> SurfacePart | None:
+    def _surface(self, surface: SurfaceAssembly) -> SurfacePart | None:
         """What lies on the part of a surface of the whole, the same object for the same surface; None if nothing does."""
         if surface not in self._surfaces:
             points, dim = surface.points, self.body.space.dim

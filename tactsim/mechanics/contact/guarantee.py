@@ -21,7 +21,7 @@ from tactsim.fem.equilibrium.balance import Balance, ExternalForces, NewtonState
 from tactsim.fem.equilibrium.diagnosis import inside_out_in_words
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium, contact_equilibrium
-from tactsim.mechanics.contact.posed_contact import PosedContact
+from tactsim.mechanics.contact.posed_contact import PosedContact, lost_traction
 from tactsim.units import format_quantity
 
 ROUND_OFF = 1e-9
@@ -104,8 +104,9 @@ class _Recorded:
         return self.contact.state.traction
 
     def rounding(self, displacement: Array) -> Array:
-        """Traction (n,) in Pa that was lost in the round-off of the positions."""
-        return self.contact.rounding(displacement)
+        """Traction (n,) in Pa lost in the round-off of the positions; the multipliers by which a point pressed are gone."""
+        pressed = self.contact.state.pressure > 0
+        return np.where(pressed, lost_traction(self.contact, displacement), self.contact.rounding(displacement))
 
 
 def _not_finite(state: ContactEquilibrium, kinematics: Kinematics) -> str | None:

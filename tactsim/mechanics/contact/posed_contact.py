@@ -66,10 +66,13 @@ class PosedContact:
 
     def rounding(self, displacement: Array) -> Array:
         """Traction (n,) in Pa lost in the round-off of the positions, which the penalties magnify; none clear of the body."""
-        along, across = np.abs(displacement).max(axis=0) + np.abs(self.place).max(), np.abs(self.reference).max(axis=0)
         gap = self.gap(displacement)
-        lost = ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
-        return np.where((gap <= ROUND_OFF * (along + across)) | (self.state.multiplier > self.pair.penalty * gap), lost, 0.0)
+        pressing = (gap <= self._position_error(displacement)) | (self.state.multiplier > self.pair.penalty * gap)
+        return np.where(pressing, lost_traction(self, displacement), 0.0)
+
+    def _position_error(self, displacement: Array) -> Array:
+        """Round-off (n,) in m of the positions of the points in the frame of the body."""
+        return ROUND_OFF * (np.abs(displacement).max(axis=0) + np.abs(self.place).max() + np.abs(self.reference).max(axis=0))
 
     def linearised(self, displacement: Array, iterate: ContactIterate) -> ContactTraction:
         """Traction and derivative as the iterated forces decide."""
@@ -85,3 +88,10 @@ class PosedContact:
 
     def _points(self, displacement: Array) -> Array:
         return self.reference + displacement - self.place[:, None]
+
+
+def lost_traction(contact: PosedContact, displacement: Array) -> Array:
+    """Traction in Pa that is lost in the round-off of the positions at any point (n,) that presses."""
+    across = np.abs(contact.reference).max(axis=0)
+    along = np.abs(displacement).max(axis=0) + np.abs(contact.place).max()
+    return ROUND_OFF * (contact.pair.penalty * along + contact.pair.tangential_penalty * (along + across))
