@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import keyword
 import itertools
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
@@ -39,7 +40,7 @@ class _Fields:
         return inspect.Signature(
             [
                 inspect.Parameter(
-                    name,
+                    f"{name}_" if keyword.iskeyword(name) else name,  # a signature takes no word of the language
                     inspect.Parameter.KEYWORD_ONLY,
                     default=empty if field.is_required() else field.get_default(call_default_factory=True),
                     annotation=types[name],

@@ -11,6 +11,7 @@ from pretence import CASE_TEXT, Pretence
 
 from tactsim.case import SCHEMA, Case, load_case
 from tactsim.errors import CaseError
+from tactsim.validation.table import Row
 
 
 def identity(path: Path, text: str) -> str:
@@ -85,3 +86,7 @@ def test_a_mapping_for_the_experiment_is_taken(pretended: None) -> None:
 def test_the_signature_names_the_keys_of_a_file(pretended: None) -> None:
     assert "schema" in inspect.signature(Case).parameters
     assert Case(SCHEMA, "A title", Pretence.example()).title == "A title"
+
+
+def test_a_key_that_is_a_word_of_the_language_has_a_signature():
+    assert "from_" in inspect.signature(Row).parameters
