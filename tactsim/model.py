@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import inspect
-import keyword
 import itertools
+import keyword
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, get_type_hints
