@@ -8,7 +8,8 @@ from solids import body_of
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.assembly.space import Measure
-from tactsim.fem.equilibrium.newton import Equilibrium, Problem
+from tactsim.fem.equilibrium.balance import Equilibrium
+from tactsim.fem.equilibrium.newton import Problem
 from tactsim.interfaces import Material
 from tactsim.mesh.quadratic import QuadraticMesh
 

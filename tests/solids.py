@@ -9,7 +9,8 @@ from skfem import MeshTet, MeshTri
 
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.space import Measure, TaylorHood
-from tactsim.fem.equilibrium.newton import Equilibrium, Problem
+from tactsim.fem.equilibrium.balance import Equilibrium
+from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import Material
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh

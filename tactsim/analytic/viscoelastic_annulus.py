@@ -142,7 +142,11 @@ class ViscoelasticAnnulus:
         """
         with np.errstate(divide="ignore"):
             depth = checked("recess", recess, "(0, inf) m") / np.float64(self.touch_factor)
-        return np.where(depth < self.thickness, depth, np.inf)
+        return self.above_base(depth)
+
+    def above_base(self, displacement: np.ndarray) -> np.ndarray:
+        """Displacements in m, of any shape, infinite where they are not smaller than the thickness of the layer."""
+        return np.where(displacement < self.thickness, displacement, np.inf)
 
     def force_to_touch(self, recess: ArrayLike, times: ArrayLike) -> np.ndarray:
         r"""Constant force in N for which the tissue in the hole rises by ``recess`` in m within ``times`` in s, broadcast.

@@ -15,7 +15,7 @@ from skfem import MeshTri
 from solids import assert_close, box, cauchy_stress, facets_where, held, on_plane
 
 from tactsim.fem.assembly.body import Body
-from tactsim.fem.equilibrium.newton import Equilibrium
+from tactsim.fem.equilibrium.balance import Equilibrium
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 

@@ -14,7 +14,7 @@ from shells import inflated, radial_displacement, radial_stress
 from solids import assert_close, box, cauchy_stress, facets_where, held, on_plane
 
 from tactsim.fem.assembly.body import Body
-from tactsim.fem.equilibrium.newton import Equilibrium
+from tactsim.fem.equilibrium.balance import Equilibrium
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")

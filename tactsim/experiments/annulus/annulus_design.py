@@ -11,7 +11,6 @@ from pydantic import Field, model_validator
 from tactsim.analytic.atrial import atrial_shear_compliance
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT, ViscoelasticAnnulus
-from tactsim.array import Array
 from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, Ratio
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
@@ -165,14 +164,12 @@ class AnnulusDesign(Experiment):
     def _map(self, annuli: list[ViscoelasticAnnulus]) -> dict[str, Quantity]:
         """The arrays over ratio, recess, force and time."""
         forces, times, recesses = np.array(self.forces), np.array(self.times), np.array(self.recesses)
-        displacement = np.array([_above_base(a, a.creep_displacement(forces[:, None], times)) for a in annuli])
+        displacement = np.array([a.above_base(a.creep_displacement(forces[:, None], times)) for a in annuli])
         rise = np.array([a.touch_factor * d for a, d in zip(annuli, displacement, strict=True)])
         force = np.array([a.force_to_touch(recesses[:, None], times) for a in annuli])
         moment = np.array([a.time_to_touch(recesses[:, None], forces) for a in annuli])
         relative = displacement / self.outer_radius
-        limits = np.array(
-            [[a.touch_factor * _above_base(a, a.creep_displacement(f, times)) for a in annuli] for f in self._limits]
-        )
+        limits = np.array([[a.touch_factor * a.above_base(a.creep_displacement(f, times)) for a in annuli] for f in self._limits])
         depth = np.array([a.touch_displacement(recesses) for a in annuli])  # whatever the time
         touches = (rise[:, None] >= recesses[:, None, None]) & np.isfinite(depth)[:, :, None, None]
         return {
@@ -202,7 +199,7 @@ class AnnulusDesign(Experiment):
         thesis = atrial_shear_compliance("viscosities", "half_shear")
         printed = ViscoelasticAnnulus(self.outer_radius, point.ratio, thesis, "thesis_4_2_21")
         as_printed = printed.creep_displacement(point.force, point.time)
-        displacement = _above_base(exact, exact.creep_displacement(point.force, point.time))
+        displacement = exact.above_base(exact.creep_displacement(point.force, point.time))
         rise = exact.touch_factor * displacement
         touches = rise >= point.recess and np.isfinite(exact.touch_displacement(point.recess))
         return {
@@ -231,11 +228,6 @@ class AnnulusDesign(Experiment):
             "the tissue was tested from 1 Hz to 36 Hz, times of 4 ms to 0.16 s: longer ones are extrapolated",
             f"small displacements end at {SMALL_DISPLACEMENT:g} of the outer radius, by convention",
         ]
-
-
-def _above_base(annulus: ViscoelasticAnnulus, displacement: Array) -> Array:
-    """Displacements in m, infinite where they are not smaller than the thickness of the layer."""
-    return np.where(displacement < annulus.thickness, displacement, np.inf)
 
 
 def _quantity(values: Any, unit: str, description: str) -> Quantity:

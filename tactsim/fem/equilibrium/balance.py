@@ -70,6 +70,23 @@ class NewtonState:
 
 
 @dataclass(frozen=True)
+class Equilibrium:
+    """A converged state: the unknowns, the deformation, the traction at each interface, and the residuals on the way there."""
+
+    unknowns: Array
+    kinematics: Kinematics
+    tractions: tuple[Array, ...]
+    history: tuple[float, ...]
+    rigid_displacement: float = 0.0
+    """Displacement in m of the interfaces along a prescribed force."""
+
+    @property
+    def iterations(self) -> int:
+        """Linear systems solved."""
+        return len(self.history) - 1
+
+
+@dataclass(frozen=True)
 class Balance:
     """The forces on one body in one solution; residuals are relative to forces, at least to ``rounding / tolerance``."""
 

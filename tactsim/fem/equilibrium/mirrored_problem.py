@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.fem.assembly.body import RelaxationStep
-from tactsim.fem.assembly.external_forces import AnyInterface, FollowerLoad
-from tactsim.fem.equilibrium.balance import ExternalForces
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.equilibrium.balance import Balance, Equilibrium
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.mirrored_part import MirroredPart
-from tactsim.fem.equilibrium.newton import Equilibrium, Problem
+from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
-from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
 from tactsim.fem.solvers.solver_choice import solver_for
 
 UNLIKE = 10.0
@@ -49,70 +45,45 @@ class MirroredProblem(Problem):
         """Of the part; one once the whole is solved."""
         return 1 if self._part is None else self._part.copies
 
-    def solve(
-        self,
-        guess: Array,
-        *,
-        interfaces: Sequence[AnyInterface] = (),
-        loads: Sequence[FollowerLoad] = (),
-        nodal_force: Array | None = None,
-        load_control: PrescribedForce | None = None,
-        rigid_displacement: float = 0.0,
-        relaxation: RelaxationStep | None = None,
-        coarse: float = 0.0,
-    ) -> Equilibrium:
-        """As `Problem.solve`."""
-        forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control)
-        given: dict[str, Any] = {"rigid_displacement": rigid_displacement, "relaxation": relaxation, "coarse": coarse}
-        history: tuple[float, ...] = ()
-        if self._part is not None and self._part.mirrors(forces.nodal(self.body.space.split(guess)[0], self.body.space.size)):
-            solution, residual = self._solved_on(self._part, guess, forces, **given)
-            goal = max(self.options.tolerance, coarse)
-            if residual <= goal:
-                return solution
-            if residual <= UNLIKE * goal:
-                guess, history = solution.unknowns, solution.history[:-1]
-                given["rigid_displacement"] = solution.rigid_displacement
-            else:
-                self._part = None
-        else:
-            self._part = None
-        solution = self._whole().solve(
-            guess, interfaces=interfaces, loads=loads, nodal_force=nodal_force, load_control=load_control, **given
-        )
-        return replace(solution, history=(*history, *solution.history))
+    def reached(self, balance: Balance, guess: Array, rigid_displacement: float, goal: float) -> Equilibrium:
+        """As `Problem.reached`."""
+        u, _ = self.body.space.split(guess)
+        if self._part is not None and not self._part.mirrors(balance.forces.nodal(u, self.body.space.size)):
+            self._whole_from_now_on()
+        if self._part is None:
+            return self._whole.reached(balance, guess, rigid_displacement, goal)
+        solution, residual = self._on(self._part, balance, guess, rigid_displacement, goal)
+        if residual <= goal:
+            return solution
+        if not residual <= UNLIKE * goal:
+            self._whole_from_now_on()
+            return self._whole.reached(balance, guess, rigid_displacement, goal)
+        finished = self._whole.reached(balance, solution.unknowns, solution.rigid_displacement, goal)
+        return replace(finished, history=(*solution.history[:-1], *finished.history))
 
+    def _on(
+        self, part: MirroredPart, balance: Balance, guess: Array, rigid_displacement: float, goal: float
+    ) -> tuple[Equilibrium, float]:
+        """The equilibrium of the part, unfolded, and the residual of the whole there."""
+        on_part = self._on_part.balance(part.forces(balance.forces), part.relaxation(balance.body.relaxation))
+        solution = self._on_part.reached(on_part, part.folded(guess), rigid_displacement, goal)
+        unknowns = part.unfolded(solution.unknowns)
+        state = balance.at(unknowns, self.body.kinematics(unknowns), solution.rigid_displacement)
+        return replace(solution, unknowns=unknowns, kinematics=state.kinematics, tractions=state.tractions), state.residual
+
+    def _whole_from_now_on(self) -> None:
+        """Give the part up, and its factor."""
+        self.solver.close()
+        self._part, self.solver = None, self._whole.solver
+
+    @property
     def _whole(self) -> Problem:
         """The problem of the whole, made when it is first needed."""
         if self._in_whole is None:
-            self._in_whole = Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=self.options)
-        if self._part is None:
-            self.solver = self._in_whole.solver
+            self._in_whole = free_problem(self.body, self.options)
         return self._in_whole
 
-    def _solved_on(
-        self,
-        part: MirroredPart,
-        guess: Array,
-        forces: ExternalForces,
-        *,
-        rigid_displacement: float,
-        relaxation: RelaxationStep | None,
-        coarse: float,
-    ) -> tuple[Equilibrium, float]:
-        """The equilibrium of the part, unfolded, and the residual of the whole there."""
-        on_part = part.forces(forces)
-        solution = self._on_part.solve(
-            part.folded(guess),
-            interfaces=on_part.interfaces,
-            loads=on_part.loads,
-            nodal_force=on_part.nodal_force,
-            load_control=on_part.load_control,
-            rigid_displacement=rigid_displacement,
-            relaxation=part.relaxation(relaxation),
-            coarse=coarse,
-        )
-        unknowns = part.unfolded(solution.unknowns)
-        state = self.balance(forces, relaxation).at(unknowns, self.body.kinematics(unknowns), solution.rigid_displacement)
-        unfolded = Equilibrium(unknowns, state.kinematics, state.tractions, solution.history, solution.rigid_displacement)
-        return unfolded, state.residual
+
+def free_problem(body: Body, options: NewtonOptions) -> Problem:
+    """A body in space without fixed unknowns, by the solver that suits it."""
+    return Problem(body, np.zeros(0, int), solver=solver_for(body), options=options)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, NoReturn
 
 import numpy as np
@@ -14,7 +13,7 @@ from tactsim.deadline import check_time
 from tactsim.errors import ConvergenceError
 from tactsim.fem.assembly.body import Body, Kinematics, RelaxationStep
 from tactsim.fem.assembly.external_forces import AnyInterface, FollowerLoad, LinearisedContact
-from tactsim.fem.equilibrium.balance import Balance, ExternalForces, NewtonState, Scales, point_displacements
+from tactsim.fem.equilibrium.balance import Balance, Equilibrium, ExternalForces, NewtonState, Scales, point_displacements
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
@@ -39,23 +38,6 @@ MOST_FURTHER = 5.0
 the last contraction promises more of them, a new one is made."""
 SHARE_OF_TOLERANCE = 0.1
 """Part of Newton's tolerance that the error of the last linear step may leave."""
-
-
-@dataclass(frozen=True)
-class Equilibrium:
-    """A converged state: the unknowns, the deformation, the traction at each interface, and the residuals on the way there."""
-
-    unknowns: Array
-    kinematics: Kinematics
-    tractions: tuple[Array, ...]
-    history: tuple[float, ...]
-    rigid_displacement: float = 0.0
-    """Displacement in m of the interfaces along a prescribed force."""
-
-    @property
-    def iterations(self) -> int:
-        """Linear systems solved."""
-        return len(self.history) - 1
 
 
 class Problem:
@@ -103,9 +85,12 @@ class Problem:
         OutOfTime
             If the time allowed has passed.
         """
-        forces = ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control)
-        balance = self.balance(forces, relaxation)
-        solution = _Solution(balance, self.solver, self.options, max(self.options.tolerance, coarse), self._factored)
+        balance = self.balance(ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control), relaxation)
+        return self.reached(balance, guess, rigid_displacement, max(self.options.tolerance, coarse))
+
+    def reached(self, balance: Balance, guess: Array, rigid_displacement: float, goal: float) -> Equilibrium:
+        """The equilibrium that `solve` returns, to a residual of ``goal``; raises as that does."""
+        solution = _Solution(balance, self.solver, self.options, goal, self._factored)
         try:
             return solution.run(guess.copy(), rigid_displacement)
         finally:

@@ -12,9 +12,9 @@ from tactsim.contact.penalty import Regularisation
 from tactsim.errors import Collapsed, ConvergenceError
 from tactsim.fem.assembly.body import Kinematics, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
-from tactsim.fem.equilibrium.balance import point_displacements
+from tactsim.fem.equilibrium.balance import Equilibrium, point_displacements
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
-from tactsim.fem.equilibrium.newton import Equilibrium, Problem
+from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
 from tactsim.mechanics.contact.contact_steps import accepted, augmented, begun_from, expected, grown, held
 from tactsim.mechanics.contact.posed_contact import PosedContact

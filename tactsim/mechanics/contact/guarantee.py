@@ -21,7 +21,7 @@ from tactsim.fem.equilibrium.balance import Balance, ExternalForces, NewtonState
 from tactsim.fem.equilibrium.diagnosis import inside_out_in_words
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium, contact_equilibrium
-from tactsim.mechanics.contact.posed_contact import PosedContact, lost_traction
+from tactsim.mechanics.contact.posed_contact import PosedContact, round_off
 from tactsim.units import format_quantity
 
 ROUND_OFF = 1e-9
@@ -105,8 +105,8 @@ class _Recorded:
 
     def rounding(self, displacement: Array) -> Array:
         """Traction (n,) in Pa lost in the round-off of the positions; the multipliers by which a point pressed are gone."""
-        pressed = self.contact.state.pressure > 0
-        return np.where(pressed, lost_traction(self.contact, displacement), self.contact.rounding(displacement))
+        lost, _ = round_off(self.contact, displacement)
+        return np.where(self.contact.state.pressure > 0, lost, self.contact.rounding(displacement))
 
 
 def _not_finite(state: ContactEquilibrium, kinematics: Kinematics) -> str | None:

@@ -66,13 +66,8 @@ class PosedContact:
 
     def rounding(self, displacement: Array) -> Array:
         """Traction (n,) in Pa lost in the round-off of the positions, which the penalties magnify; none clear of the body."""
-        gap = self.gap(displacement)
-        pressing = (gap <= self._position_error(displacement)) | (self.state.multiplier > self.pair.penalty * gap)
-        return np.where(pressing, lost_traction(self, displacement), 0.0)
-
-    def _position_error(self, displacement: Array) -> Array:
-        """Round-off (n,) in m of the positions of the points in the frame of the body."""
-        return ROUND_OFF * (np.abs(displacement).max(axis=0) + np.abs(self.place).max() + np.abs(self.reference).max(axis=0))
+        gap, (lost, position_error) = self.gap(displacement), round_off(self, displacement)
+        return np.where((gap <= position_error) | (self.state.multiplier > self.pair.penalty * gap), lost, 0.0)
 
     def linearised(self, displacement: Array, iterate: ContactIterate) -> ContactTraction:
         """Traction and derivative as the iterated forces decide."""
@@ -90,8 +85,8 @@ class PosedContact:
         return self.reference + displacement - self.place[:, None]
 
 
-def lost_traction(contact: PosedContact, displacement: Array) -> Array:
-    """Traction in Pa that is lost in the round-off of the positions at any point (n,) that presses."""
-    across = np.abs(contact.reference).max(axis=0)
-    along = np.abs(displacement).max(axis=0) + np.abs(contact.place).max()
-    return ROUND_OFF * (contact.pair.penalty * along + contact.pair.tangential_penalty * (along + across))
+def round_off(contact: PosedContact, displacement: Array) -> tuple[Array, Array]:
+    """Traction (n,) in Pa that is lost in the round-off of the positions at any point that presses, and that round-off in m."""
+    along, across = np.abs(displacement).max(axis=0) + np.abs(contact.place).max(), np.abs(contact.reference).max(axis=0)
+    lost = ROUND_OFF * (contact.pair.penalty * along + contact.pair.tangential_penalty * (along + across))
+    return lost, ROUND_OFF * (along + across)

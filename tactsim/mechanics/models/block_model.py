@@ -17,10 +17,9 @@ from tactsim.fem.assembly.regularising_springs import RegularisingSprings
 from tactsim.fem.assembly.space import FACET_POINTS, TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.mirrored_part import SAME_PLACE, mirrored_part
-from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem
+from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem, free_problem
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
-from tactsim.fem.solvers.solver_choice import solver_for
 from tactsim.interfaces import ContactLaw, Material
 from tactsim.interfaces.solid import FACES
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD, TaxelLayout
@@ -82,26 +81,27 @@ class GraspModel:
 
     def _posed(self, options: NewtonOptions) -> Problem:
         """The problem of the block, or of a part of it that stands for the whole."""
-        part = mirrored_part(self.body, [axis for axis in range(3) if self._jaws_mirror(axis)])
-        if part is not None:
-            return MirroredProblem(part, options=options)
-        return Problem(self.body, np.zeros(0, int), solver=solver_for(self.body), options=options)
+        part = mirrored_part(self.body, self._axes_across_mirrors())
+        return free_problem(self.body, options) if part is None else MirroredProblem(part, options=options)
 
-    def _jaws_mirror(self, axis: int) -> bool:
-        """Whether the middle plane across an axis mirrors the jaws where they first touch, each onto itself or onto the other."""
+    def _axes_across_mirrors(self) -> list[int]:
+        """Axes across which the middle plane mirrors the jaws where they first touch, each onto itself or onto the other."""
+        try:
+            places = {side: self.touching_place(side)[:, None] for side in JAWS}
+        except InputError:  # which the start says
+            return []
         low, high = self.mesh.nodes.min(axis=0), self.mesh.nodes.max(axis=0)
-        for side, other in zip(JAWS, reversed(JAWS) if axis == 2 else JAWS, strict=True):
-            try:
-                here, there = (self.touching_place(one)[:, None] for one in (side, other))
-            except InputError:  # which the start says
-                return False
-            mirrored = self.references[side].copy()
-            mirrored[axis] = low[axis] + high[axis] - mirrored[axis]
-            gaps = self.jaws[side].signed_distance(self.references[side] - here)[0]
-            images = self.jaws[other].signed_distance(mirrored - there)[0]
-            if np.abs(gaps - images).max() > SAME_PLACE * float((high - low).max()):
-                return False
-        return True
+        gaps = {side: self.jaws[side].signed_distance(self.references[side] - places[side])[0] for side in JAWS}
+
+        def mirrors(axis: int) -> bool:
+            apart = []
+            for side, other in zip(JAWS, reversed(JAWS) if axis == 2 else JAWS, strict=True):
+                mirrored = self.references[side].copy()
+                mirrored[axis] = low[axis] + high[axis] - mirrored[axis]
+                apart.append(np.abs(gaps[side] - self.jaws[other].signed_distance(mirrored - places[other])[0]).max())
+            return bool(max(apart) <= SAME_PLACE * (high - low).max())
+
+        return [axis for axis in range(3) if mirrors(axis)]
 
     def touching_place(self, side: str) -> Array:
         """Place (3,) in m of a jaw's middle at which it first touches the undeformed block.

@@ -15,10 +15,8 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.experiments.grasp.path import FIRST_PART
 from tactsim.fem.assembly.body import RelaxationStep
-from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem
-from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem, free_problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
-from tactsim.fem.solvers.solver_choice import solver_for
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.block_model import START_PATIENCE, GraspModel
@@ -42,8 +40,7 @@ def model(shift=0.0, width=40e-3, tilt=0.0):
 
 def solved_whole(one):
     """The same model with nothing mirrored."""
-    options = NewtonOptions(start_patience=START_PATIENCE)
-    one.problem = Problem(one.body, np.zeros(0, int), solver=solver_for(one.body), options=options)
+    one.problem = free_problem(one.body, NewtonOptions(start_patience=START_PATIENCE))
     return one
 
 
