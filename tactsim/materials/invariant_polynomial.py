@@ -39,9 +39,10 @@ class InvariantPolynomial(Hyperelastic):
         return self._derivative(I1, I2, 2, 0), self._derivative(I1, I2, 1, 1), self._derivative(I1, I2, 0, 2)
 
     def _derivative(self, I1: Array, I2: Array, m: int, n: int) -> Array:
-        """The derivative m times by I1 and n times by I2."""
+        """The derivative m times by I1 and n times by I2; terms of lower powers have none."""
+        left = {power: c for power, c in self.terms.items() if power[0] >= m and power[1] >= n}
         return sum(
-            (c * monomial_derivative(I1, I2, power, (m, n)) for power, c in self.terms.items()),
+            (c * monomial_derivative(I1, I2, power, (m, n)) for power, c in left.items()),
             start=np.zeros(np.broadcast_shapes(np.shape(I1), np.shape(I2))),
         )
 
@@ -60,5 +61,5 @@ def _power_derivative(x: Array, power: int, order: int) -> Array:
     """The derivative of ``x**power``, ``order`` <= 2 times."""
     if power < order:
         return np.zeros_like(x)
-    factor = (1, power, power * (power - 1))[order]
-    return factor * x ** (power - order)
+    factor = float((1, power, power * (power - 1))[order])
+    return np.full_like(x, factor) if power == order else factor * x ** (power - order)

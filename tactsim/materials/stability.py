@@ -57,6 +57,18 @@ def shear_conditions(derivatives: Derivatives, stretches: Array) -> tuple[Array,
     return np.stack(shear), np.stack(opposite), np.stack(equal)
 
 
+def convex_in_invariants(material: Hyperelastic, I1: Array, I2: Array) -> Array:
+    """Whether W rises with the invariants of the isochoric part and is convex in them, booleans of their shape.
+
+    The material is strongly elliptic there whatever the stretches: no term of Q in `shear_conditions` is negative, and the first
+    two are positive.
+    """
+    W1, W2 = material.energy_gradient(I1, I2)
+    W11, W12, W22 = material.energy_hessian(I1, I2)
+    rises = (W1 >= 0) & (W2 >= 0) & (W1 + W2 > 0)
+    return rises & (W11 >= 0) & (W22 >= 0) & (W11 * W22 >= W12**2)
+
+
 def invariant_ellipticity_margin(material: Hyperelastic, stretches: Array) -> Array:
     r"""Smallest of the nine conditions of strong ellipticity in Pa; positive where, and only where, the material is elliptic.
 

@@ -86,7 +86,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         values |= {
             "displacement": contact.load,
             "reaction_force": float(forces[0][-1]),
-            "base_force": float(model.base_force(contact.unknowns, state.relaxation)[-1]),
+            "base_force": float(model.base_force(contact, state.relaxation)[-1]),
             "max_penetration": max(0.0, *(float(-touch.gap.min()) for touch in touches)),
             "max_pressure": max(float(touch.pressure.max()) for touch in touches),
             **self.quality.values(model.body, contact),

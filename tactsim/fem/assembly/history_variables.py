@@ -164,7 +164,7 @@ def _solved(F: Array, P: Array) -> Array:
 def size_of(body: Body, stress: Array) -> float:
     """Root mean square of a symmetric stress (6, E, Q) over the volume, in Pa."""
     weights = body.points.weights
-    return float(np.sqrt(np.einsum("eq,c,ceq,ceq->", weights, DOUBLE, stress, stress) / weights.sum()))
+    return float(np.sqrt(DOUBLE @ np.einsum("ceq,ceq->c", weights * stress, stress) / weights.sum()))
 
 
 def step_error(body: Body, variables: HistoryVariables, least: float = 0.0) -> float:

@@ -279,6 +279,7 @@ class _Solution:
 
     def _admissible(self, unknowns: Array, floor: float) -> Kinematics | None:
         after = self._body.kinematics(unknowns)
-        J = self._body.oriented_volume_ratio(after)[~self._body.linear]
-        ok = np.isfinite(after.F).all() and (not J.size or J.min() > floor)
+        J = self._body.oriented_volume_ratio(after)
+        kept = J if not self._body.linear.any() else J[~self._body.linear]
+        ok = np.isfinite(J).all() and (not kept.size or kept.min() > floor)  # no J is finite where an entry of F is not
         return after if ok else None

@@ -19,7 +19,13 @@ from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.materials.polynomial import Polynomial
 from tactsim.materials.sampled_stability import sampled_drucker_margin, sampled_ellipticity_margin
-from tactsim.materials.stability import drucker_margin, ellipticity_margin, principal_stretches, strongly_elliptic
+from tactsim.materials.stability import (
+    convex_in_invariants,
+    drucker_margin,
+    ellipticity_margin,
+    principal_stretches,
+    strongly_elliptic,
+)
 from tactsim.materials.stability_range import around_rest, lost_intervals, stability_range
 from tactsim.registry import kinds
 
@@ -147,6 +153,26 @@ def test_twenty_thousand_points_are_judged_in_one_evaluation_of_the_energy(monke
     monkeypatch.setattr(type(material), "energy_hessian", lambda self, *invariants: asked.append(1) or hessian(self, *invariants))
     strongly_elliptic(material, F)
     assert 1 <= len(asked) <= 3, asked
+
+
+def test_an_energy_that_rises_with_the_invariants_and_is_convex_in_them_is_elliptic():
+    """Each of the conditions is needed: points that lack it alone lose ellipticity."""
+    logarithms = np.random.default_rng(7).uniform(-1, 1, (2, 2000))
+    stretches = np.exp([*logarithms, -logarithms.sum(axis=0)])
+    invariants = (stretches**2).sum(axis=0), (stretches**-2).sum(axis=0)
+    alone = dict.fromkeys(("W1", "W2", "W11", "W22", "W12"), 0)
+    for seed in range(200):
+        material = random_polynomial(seed)
+        elliptic = ellipticity_margin(material, stretches) > 0
+        convex = convex_in_invariants(material, *invariants)
+        assert elliptic[convex].all()
+        (W1, W2), (W11, W12, W22) = material.energy_gradient(*invariants), material.energy_hessian(*invariants)
+        kept = {"W1": W1 >= 0, "W2": W2 >= 0, "W11": W11 >= 0, "W22": W22 >= 0, "W12": W11 * W22 >= W12**2}
+        np.testing.assert_array_equal(convex, np.all(list(kept.values()), axis=0))
+        for name, holds in kept.items():
+            others = np.all([value for other, value in kept.items() if other != name], axis=0)
+            alone[name] += int((others & ~holds & ~elliptic).sum())
+    assert min(alone[name] for name in ("W1", "W2", "W12")) > 0, alone  # of W11 and W22 alone, W12 says so too
 
 
 def test_volume_and_rotation_do_not_matter_and_an_inverted_point_is_not_elliptic():
