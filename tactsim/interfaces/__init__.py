@@ -40,6 +40,8 @@ class Material(CaseKind):
     Fields carry components first: ``F`` has shape ``(3, 3, ...)``, ``pressure`` the trailing shape. The volume constraint is
     ``volume_change(F) - pressure / bulk_modulus = 0``, tension positive; a bulk modulus of None means exactly incompressible.
     A body uses the stress and tangent given here; one without a compiled form is assembled by numpy, several times slower.
+    The axes of ``F`` are x, y, z; in a section of revolution r, z and the hoop. A law with a direction may thus be used wherever
+    the planes that a model mirrors or leaves out of account mirror the law, too; elsewhere it is refused.
 
     >>> import tactsim as ts
     >>> tissue = ts.material("icf_stable")
@@ -81,7 +83,7 @@ class Material(CaseKind):
 class RigidBody(CaseKind):
     """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates.
 
-    A case file names it as ``body``.
+    A case file names it as ``body``. One that mirror planes of the tissue do not mirror is computed with the whole tissue.
 
     >>> import tactsim as ts
     >>> import numpy as np

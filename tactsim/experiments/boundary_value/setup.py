@@ -23,6 +23,7 @@ from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.materials.any_material import AnyMaterial
+from tactsim.materials.mirrored import check_in_plane, law_mirrors
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
 from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
@@ -133,6 +134,7 @@ class BoundaryValueSetup(FrozenModel):
         """Check that the body has what the case names, with its mesh."""
         parts = Parts.of(self.geometry, self.dimension)
         held = motions_of(parts, self.conditions)
+        self._check_mirrors(parts)
         for number, contact in enumerate(self.contacts):
             _blaming(f"contacts.{number}.", _check_touch, parts, contact)
         for name, one in self.asked.items():
@@ -149,6 +151,20 @@ class BoundaryValueSetup(FrozenModel):
                 f"conditions: nothing holds the body against {in_words(free)}; prescribe such a displacement of a face or a point"
             )
         self._check_freedom(parts, held)
+
+    def _check_mirrors(self, parts: Parts) -> None:
+        """Check that the planes of symmetry, and that of a section, mirror the material."""
+        if self.dimension != "3d":
+            try:
+                check_in_plane(self.material)
+            except InputError as error:
+                raise ValueError(f"material: {error}") from None
+        for name, axis in parts.domain.mirrors.items():
+            if not law_mirrors(self.material, axis):
+                raise ValueError(
+                    f"material: {self.material.kind} is not its own mirror image across {name}, where the part computed ends; "
+                    "take a geometry without this plane, such as part: whole, or turn the axes of the material"
+                )
 
     def _check_freedom(self, parts: Parts, held: Sequence[Held]) -> None:
         """Check that an incompressible body may give way somewhere."""
