@@ -11,7 +11,7 @@ from __future__ import annotations
 import hashlib
 from abc import abstractmethod
 from collections.abc import Callable
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Protocol, Self
 
 from numpy.typing import ArrayLike
 
@@ -30,8 +30,16 @@ from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result
 from tactsim.units import Area, Positive
 
-Drawing = Callable[..., bytes]
-"""Draws one figure and returns it as PNG, or as the form (``png``, ``svg``, ``pdf``) that it is called with."""
+
+class Drawing(Protocol):
+    """Draws one figure when it is wanted, such as `tactsim.plotting.canvas.Plot`."""
+
+    @property
+    def figure(self) -> Callable[[], Any]:
+        """Returns it as a figure of matplotlib."""
+
+    def __call__(self, form: str = "png") -> bytes:
+        """It as a file of this form, ``png``, ``svg`` or ``pdf``."""
 
 
 class Material(CaseKind):
