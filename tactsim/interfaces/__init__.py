@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import hashlib
 from abc import abstractmethod
-from collections.abc import Callable
-from typing import Any, ClassVar, Literal, Protocol, Self
+from typing import Any, ClassVar, Literal, Self
 
 from numpy.typing import ArrayLike
 
 from tactsim.array import Array
 from tactsim.interfaces.contact_shape import ContactShape
+from tactsim.interfaces.drawing import Drawing as Drawing
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.readings import Readings
@@ -29,17 +29,6 @@ from tactsim.kind import CaseKind, Kind
 from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result
 from tactsim.units import Area, Positive
-
-
-class Drawing(Protocol):
-    """Draws one figure when it is wanted, such as `tactsim.plotting.canvas.Plot`."""
-
-    @property
-    def figure(self) -> Callable[[], Any]:
-        """Returns it as a figure of matplotlib."""
-
-    def __call__(self, form: str = "png") -> bytes:
-        """It as a file of this form, ``png``, ``svg`` or ``pdf``."""
 
 
 class Material(CaseKind):

@@ -8,6 +8,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, StringConstraints, model_validator
 
+from tactsim.contact.traction import ContactPair
 from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.asked import AnyAsked, AskedDisplacement, AskedForce, AskedStress, AskedTorque
 from tactsim.experiments.boundary_value.conditions import (
@@ -93,7 +94,7 @@ class BoundaryValueSetup(FrozenModel):
 
     def largest_penetration(self, size: float) -> float:
         """Largest penetration in m that is allowed, of a body of this size in m."""
-        rubs = any(one.law.traction_limit(np.ones(1)).any() for one in self.contacts)
+        rubs = any(ContactPair(one.body, one.law).has_friction for one in self.contacts)
         return self.penetration_tolerance or (WITH_FRICTION if rubs else PENETRATION_SHARE) * size
 
     @model_validator(mode="after")
