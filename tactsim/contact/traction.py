@@ -20,6 +20,9 @@ Record = TypeVar("Record", "ContactState", "ContactIterate", "ContactPair")
 AT_LIMIT = 1e-9
 """A point slips if its tangential traction is within this part of the limit."""
 
+PROBED = (1.0, 1e3, 1e6, 1e9)
+"""Pressures in Pa at which a law is asked whether it has friction: one may begin at a threshold."""
+
 
 @dataclass(frozen=True)
 class ContactState:
@@ -144,7 +147,7 @@ class ContactPair:
     @property
     def has_friction(self) -> bool:
         """Whether friction may act at any point."""
-        return bool(self.traction_limit(np.ones(1)).any())
+        return any(self.traction_limit(np.full(1, pressure)).any() for pressure in PROBED)
 
     def limit_slope(self, pressure: Array) -> Array:
         """Derivative (n,) of the limit with respect to the pressure, dimensionless."""

@@ -10,13 +10,13 @@ from __future__ import annotations
 
 import hashlib
 from abc import abstractmethod
-from collections.abc import Callable
 from typing import Any, ClassVar, Literal, Self
 
 from numpy.typing import ArrayLike
 
 from tactsim.array import Array
 from tactsim.interfaces.contact_shape import ContactShape
+from tactsim.interfaces.drawing import Drawing as Drawing
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.readings import Readings
@@ -30,9 +30,6 @@ from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result
 from tactsim.units import Area, Positive
 
-Drawing = Callable[..., bytes]
-"""Draws one figure and returns it as PNG, or as the form (``png``, ``svg``, ``pdf``) that it is called with."""
-
 
 class Material(CaseKind):
     """A constitutive law at a point: isochoric stress plus a pressure that answers the volume change.
@@ -40,6 +37,8 @@ class Material(CaseKind):
     Fields carry components first: ``F`` has shape ``(3, 3, ...)``, ``pressure`` the trailing shape. The volume constraint is
     ``volume_change(F) - pressure / bulk_modulus = 0``, tension positive; a bulk modulus of None means exactly incompressible.
     A body uses the stress and tangent given here; one without a compiled form is assembled by numpy, several times slower.
+    The axes of ``F`` are x, y, z; in a section of revolution r, z and the hoop. A law with a direction may thus be used wherever
+    the planes that a model mirrors or leaves out of account mirror the law, too; elsewhere it is refused.
 
     >>> import tactsim as ts
     >>> tissue = ts.material("icf_stable")
@@ -81,7 +80,7 @@ class Material(CaseKind):
 class RigidBody(CaseKind):
     """A rigid body as a signed distance in its own frame: the reference point at the origin, ``d`` coordinates.
 
-    A case file names it as ``body``.
+    A case file names it as ``body``. One that mirror planes of the tissue do not mirror is computed with the whole tissue.
 
     >>> import tactsim as ts
     >>> import numpy as np

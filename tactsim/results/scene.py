@@ -7,7 +7,7 @@ from typing import Any, ClassVar
 
 from pydantic import ValidationError
 
-from tactsim.errors import TactsimError
+from tactsim.errors import TactsimError, shown
 from tactsim.kind import Kind
 from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
@@ -55,9 +55,10 @@ class SolverReport(FrozenModel):
 
 @dataclass(frozen=True)
 class UnreadableScene:
-    """A stored scene that cannot be read, and the reason."""
+    """A stored scene that cannot be read, the reason, and what to do."""
 
     reason: str
+    remedy: str = "run the case again"
 
 
 def read_scene(kind: str, described: Any) -> Scene | UnreadableScene | None:
@@ -67,8 +68,11 @@ def read_scene(kind: str, described: Any) -> Scene | UnreadableScene | None:
     try:
         scene: Scene = kind_class(Scene, kind).model_validate(described)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+        first = error.errors(include_url=False, include_input=False)[0]
         place = ".".join(map(str, ("scene", *first["loc"])))
+        if first["type"] == "union_tag_invalid":
+            unknown = f"{one_line(place)}: the kind {shown(first['ctx']['tag'])} is not known here"
+            return UnreadableScene(unknown, "import the module that defines it first, or run the case again")
         return UnreadableScene(f"{one_line(place)}: {one_line(first['msg'])}")
     except (TactsimError, ArithmeticError) as error:
         return UnreadableScene(f"scene: {one_line(error)}")

@@ -90,7 +90,7 @@ FOLDER = {
         from typing import Literal
         from tactsim.experiments.spring.scene import SpringScene
         from tactsim.interfaces import ResultFigures
-        from tactsim.plotting.canvas import new_figure, png
+        from tactsim.plotting.canvas import Plot, new_figure
 
         class SpringFigures(ResultFigures):
             """One figure."""
@@ -103,7 +103,7 @@ FOLDER = {
                 figure = new_figure(3.0, 2.0)
                 colour = result.scene_as(SpringScene).colour
                 figure.subplots().plot(result.history_values("extension"), result.history_values("force"), color=colour)
-                return {"spring.png": lambda: png(figure)}
+                return {"spring.png": Plot(lambda: figure)}
     ''',
     "recorder": '''
         """Its extension and its stiffness."""

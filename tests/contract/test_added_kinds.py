@@ -16,9 +16,10 @@ from tactsim.case.json_schema import case_json_schema
 from tactsim.case.loading import load_case
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
-from tactsim.errors import AmbiguousKind, CaseError, UnknownName
+from tactsim.errors import AmbiguousKind, CaseError, StorageError, UnknownName
 from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.recorder import inclusion_kinds
+from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.experiments.localization.confusion import class_of
 from tactsim.experiments.recording import RecordingSettings, recorder_for
 from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShape
@@ -38,6 +39,7 @@ from tactsim.interfaces.readings import Readings
 from tactsim.live.session.choices import offered_choices
 from tactsim.localization.estimators.any_estimator import offered_estimators
 from tactsim.plotting import figures_for
+from tactsim.presentation import load_result
 from tactsim.registry import forget, kind_class, kinds
 from tactsim.results.result import Status
 
@@ -103,11 +105,13 @@ MODULES = {
     """,
     ResultFigures: """
         from typing import Literal
+        from matplotlib.figure import Figure
         from tactsim.interfaces import ResultFigures
+        from tactsim.plotting.canvas import Plot
         class Added(ResultFigures):
             kind: Literal["added"] = "added"
             def drawings(self, result):
-                return {"added.png": lambda: b"PNG"}
+                return {"added.png": Plot(Figure)}
     """,
 }
 
@@ -306,6 +310,19 @@ def test_a_recorder_and_figures_are_found_by_the_kind_of_the_experiment(added: A
     assert "line_slope" in {variable.name for variable in layout.variables}
     result = kinds(Experiment)["added"].example().run(lambda step: None)
     assert list(figures_for(result)) == ["added.png"]
+    assert figures_for(result)["added.png"]("svg").startswith(b"<?xml")
+    assert list(result.plot()) == ["added"]  # type: ignore[arg-type]
+    assert (result.save(tmp_path / "kept") / "figures" / "added.png").exists()
+
+
+def test_a_result_with_a_body_of_a_kind_that_is_not_loaded_says_so(added: Any, tmp_path: Path) -> None:
+    added(RigidBody)
+    text = PRESS + "  mesh: {finest: 2 mm, growth: 1, adaptive: false}\n"
+    folder = case(tmp_path, text, {"BODY": "added"}).run(None).save(tmp_path / "kept")
+    forget(kind_class(RigidBody, "added"))
+    result = load_result(folder)
+    with pytest.raises(StorageError, match="the kind 'added' is not known here; import the module that defines it first"):
+        result.scene_as(IndentationScene)
 
 
 @pytest.mark.parametrize("base", POINTS, ids=lambda base: base.__name__)

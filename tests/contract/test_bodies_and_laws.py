@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 import pytest
 
@@ -122,3 +124,15 @@ def test_a_pair_has_friction_where_its_law_and_its_mask_allow_it():
     assert ContactPair(plane, rough, friction_mask=np.array([0.0, 1.0])).has_friction
     assert not ContactPair(plane, rough, friction_mask=np.zeros(2)).has_friction
     assert not ContactPair(plane, smooth).has_friction
+
+
+def test_friction_that_begins_at_a_pressure_is_friction():
+    class Squeezed(LAWS["coulomb"]):
+        kind: Literal["squeezed"] = "squeezed"
+
+        def traction_limit(self, pressure):
+            return super().traction_limit(np.maximum(pressure - 5e3, 0.0))
+
+    plane = BODIES["plane"].example()
+    assert ContactPair(plane, Squeezed(friction=0.5)).has_friction
+    assert not ContactPair(plane, Squeezed(friction=0.0)).has_friction

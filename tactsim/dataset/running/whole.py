@@ -110,7 +110,10 @@ def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Swe
     foreign = kinds_outside("tactsim")
     for kind in _kinds_in(document.value):
         if kind in foreign:
-            raise InputError(f"{foreign[kind]} is defined in this session, and the worker processes of a sweep cannot load it")
+            raise InputError(
+                f"{foreign[kind]} is defined in this session, and the worker processes of a sweep cannot load it; run its cases "
+                "one by one, or put the class into a module of the package"
+            )
     return sweep_of_document(document)
 
 

@@ -8,6 +8,7 @@ from typing import Annotated, Self
 import numpy as np
 from pydantic import Field, StringConstraints, model_validator
 
+from tactsim.contact.traction import ContactPair
 from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.asked import AnyAsked, AskedDisplacement, AskedForce, AskedStress, AskedTorque
 from tactsim.experiments.boundary_value.conditions import (
@@ -23,6 +24,7 @@ from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.materials.any_material import AnyMaterial
+from tactsim.materials.mirrored import check_in_plane, law_mirrors
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
 from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
@@ -92,7 +94,7 @@ class BoundaryValueSetup(FrozenModel):
 
     def largest_penetration(self, size: float) -> float:
         """Largest penetration in m that is allowed, of a body of this size in m."""
-        rubs = any(one.law.traction_limit(np.ones(1)).any() for one in self.contacts)
+        rubs = any(ContactPair(one.body, one.law).has_friction for one in self.contacts)
         return self.penetration_tolerance or (WITH_FRICTION if rubs else PENETRATION_SHARE) * size
 
     @model_validator(mode="after")
@@ -133,6 +135,7 @@ class BoundaryValueSetup(FrozenModel):
         """Check that the body has what the case names, with its mesh."""
         parts = Parts.of(self.geometry, self.dimension)
         held = motions_of(parts, self.conditions)
+        self._check_mirrors(parts)
         for number, contact in enumerate(self.contacts):
             _blaming(f"contacts.{number}.", _check_touch, parts, contact)
         for name, one in self.asked.items():
@@ -149,6 +152,20 @@ class BoundaryValueSetup(FrozenModel):
                 f"conditions: nothing holds the body against {in_words(free)}; prescribe such a displacement of a face or a point"
             )
         self._check_freedom(parts, held)
+
+    def _check_mirrors(self, parts: Parts) -> None:
+        """Check that the planes of symmetry, and that of a section, mirror the material."""
+        if self.dimension != "3d":
+            try:
+                check_in_plane(self.material)
+            except InputError as error:
+                raise ValueError(f"material: {error}") from None
+        for name, axis in parts.domain.mirrors.items():
+            if not law_mirrors(self.material, axis):
+                raise ValueError(
+                    f"material: {self.material.kind} is not its own mirror image across {name}, where the part computed ends; "
+                    "take a geometry without this plane, such as part: whole, or turn the axes of the material"
+                )
 
     def _check_freedom(self, parts: Parts, held: Sequence[Held]) -> None:
         """Check that an incompressible body may give way somewhere."""

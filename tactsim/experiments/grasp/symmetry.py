@@ -9,6 +9,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import Embedded, GraspSetup
+from tactsim.materials.mirrored import law_mirrors
 
 SAMPLES = 400
 """Points in the block at which distances from surfaces are compared: two shapes that agree at so many are one."""
@@ -17,8 +18,9 @@ SAME_PLACE = 1e-6
 
 
 def mirror_axes(grasp: GraspSetup) -> tuple[int, ...]:
-    """Axes, 0 for x and 1 for y, whose middle planes mirror block, inclusions, jaws and taxels onto themselves."""
-    return tuple(axis for axis in (0, 1) if _jaws_mirror(grasp, axis) and _inclusions_mirror(grasp, axis))
+    """Axes, 0 for x and 1 for y, whose middle planes mirror block, materials, inclusions, jaws and taxels onto themselves."""
+    conditions = (_jaws_mirror, _inclusions_mirror, _laws_mirror)
+    return tuple(axis for axis in (0, 1) if all(mirror(grasp, axis) for mirror in conditions))
 
 
 def mirror_asymmetry(readings: Mapping[str, JawReading], axes: tuple[int, ...]) -> float:
@@ -34,6 +36,11 @@ def _jaws_mirror(grasp: GraspSetup, axis: int) -> bool:
     """Whether both jaws stand in the middle and lean only along the plane: a rotation about x lowers a jaw along y."""
     tilt = ("tilt_y", "tilt_x")[axis]
     return all(jaw.offset[axis] == 0 and getattr(jaw, tilt) == 0 for jaw in (grasp.upper, grasp.lower))
+
+
+def _laws_mirror(grasp: GraspSetup, axis: int) -> bool:
+    """Whether tissue and inclusions have no preferred direction oblique to the plane."""
+    return all(law_mirrors(material, axis) for material in grasp.materials)
 
 
 def _inclusions_mirror(grasp: GraspSetup, axis: int) -> bool:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.contact.mirrored import body_mirrors
 from tactsim.contact.tilted import Tilt, Tilted
 from tactsim.experiments.indentation.displaced import DisplacedSetup
 from tactsim.experiments.indentation.graded_section import GradedSection, MeshSettings
@@ -15,6 +16,7 @@ from tactsim.experiments.indentation.history import history_units
 from tactsim.experiments.indentation.setup import Posed
 from tactsim.fem.paths.loading import StepControl
 from tactsim.interfaces import Experiment
+from tactsim.materials.mirrored import law_mirrors
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.revolved import SweepSymmetry, largest_offset, shifted_outside, swept
@@ -86,15 +88,20 @@ class SpaceIndentation(DisplacedSetup, Experiment):
     @model_validator(mode="after")
     def _held(self) -> Self:
         if self.specimen.base == "slipping" and self.symmetry is not SweepSymmetry.QUARTER:
-            raise ValueError("on a slipping base an offset or tilted body pushes the specimen away: set base: fixed")
+            raise ValueError("on a slipping base what is off the axis or oblique pushes the specimen away: set base: fixed")
         return self
 
     @property
     def symmetry(self) -> SweepSymmetry:
-        """The part of the specimen that is computed: the largest symmetry that offset and tilts leave."""
-        if self.tilt_x != 0:
+        """The part of the specimen that is computed: the largest symmetry that offset, tilts, body and materials leave."""
+        if self.tilt_x != 0 or not self._mirrors(1):
             return SweepSymmetry.WHOLE
-        return SweepSymmetry.HALF if self.offset != 0 or self.tilt_y != 0 else SweepSymmetry.QUARTER
+        return SweepSymmetry.HALF if self.offset != 0 or self.tilt_y != 0 or not self._mirrors(0) else SweepSymmetry.QUARTER
+
+    def _mirrors(self, axis: int) -> bool:
+        """Whether the body, upright, and all materials are their own mirror images along an axis."""
+        laws = all(law_mirrors(material, axis) for material in self.specimen.materials)
+        return laws and body_mirrors(self.body, axis, self.specimen.radius)
 
     def posed(self) -> Posed:
         """The body as it leans, off the axis."""

@@ -19,6 +19,7 @@ from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import ContactLaw, Material, RigidBody
+from tactsim.materials.mirrored import check_in_plane
 from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
 from tactsim.mechanics.contact.first_touch import first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
@@ -42,6 +43,11 @@ class PressedModel(ABC):
     measure : what the mesh stands for
     mirrors : coordinates that are zero on planes of symmetry
     options : of Newton's method
+
+    Raises
+    ------
+    InputError
+        If the mesh is a section and a material shears it out of its plane.
     """
 
     def __init__(
@@ -55,6 +61,8 @@ class PressedModel(ABC):
         mirrors: Sequence[int],
         options: NewtonOptions | None = None,
     ):
+        for material in materials if mesh.dim == 2 else ():
+            check_in_plane(material)
         self.mesh, self.top, self.base = mesh, top, base
         self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
         self.body = Body(self.space, materials, mesh.regions)

@@ -98,6 +98,7 @@ def test_the_case_converges(path):
         ("to: 1 mm", "to: 11 mm", ":9: experiment.loading: each jaw closes by 11 mm; allowed"),
         ("pitch: 10 mm", "pitch: 30 mm", ":8: experiment.matrix: 69 mm wide"),
         ("tissue: icf_stable", "tissue: icf_staple", ":5: experiment.block.tissue: unknown material"),
+        ("control: displacement, ", "", ":9: experiment.loading.control: missing; choices: displacement, force"),
     ],
 )
 def test_what_a_whole_grasp_refuses_is_told_with_the_line_of_the_key(tmp_path, old, new, place):
