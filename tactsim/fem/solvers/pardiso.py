@@ -40,9 +40,6 @@ NO_MEMORY = (-2, -9)
 
 LIBRARY_VARIABLE = "PYPARDISO_MKL_RT"
 """Environment variable in which pypardiso takes the path of MKL's library."""
-BRANCH, REPEATING = "MKL_CBWR", "AUTO,STRICT"
-"""Environment variable with which MKL chooses its loops, and the choice by which a sum does not depend on where its numbers lie
-in memory, which differs from run to run (oneMKL Developer Guide, "Obtaining Numerically Reproducible Results")."""
 
 
 @dataclass(frozen=True)
@@ -274,7 +271,7 @@ def _pardiso_binding(kind: int) -> Any:
     """
     _tell_where_mkl_is()
     wait_without_spinning()
-    os.environ.setdefault(BRANCH, REPEATING)
+    os.environ.setdefault("MKL_CBWR", "AUTO,STRICT")  # else a sum depends on where its numbers lie in memory, anew in each run
     try:
         import pypardiso  # makes a solver of its own, so that it raises too
 

@@ -106,7 +106,11 @@ def test_help_is_quick_because_it_imports_nothing_heavy() -> None:
 
 @pytest.mark.parametrize(
     ("words", "code"),
-    [(["run", "annulus_icf", "--set", "experiment.recesss=1 mm"], 2), (["material", "icf_stable"], 0), (["show", STORED_GRASP], 0)],
+    [
+        (["run", "annulus_icf", "--set", "experiment.reces=1 mm"], 2),
+        (["material", "icf_stable"], 0),
+        (["show", STORED_GRASP], 0),
+    ],
 )
 def test_what_needs_plain_units_alone_does_not_wait_for_pint(words: list[str], code: int) -> None:
     """Which takes a third of a second to load, with Dask where that is installed."""
