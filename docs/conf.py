@@ -80,7 +80,7 @@ if any((HERE / "gallery").glob("plot_*.py")):
         "ignore_pattern": r"/stored/",
         "within_subsection_order": "gallery_pages.InOrder",
         "image_scrapers": ("matplotlib", "gallery_pages.last_figure"),
-        "ignore_repr_types": r"matplotlib\.",
+        "ignore_repr_types": r"matplotlib\.|tactsim\.plotting\.canvas\.",
         "remove_config_comments": True,
         "show_memory": False,
         "write_computation_times": False,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import html as markup
 from dataclasses import replace
 from pathlib import Path
@@ -12,7 +11,7 @@ from tactsim.case.model import Case
 from tactsim.errors import InputError, UnknownName
 from tactsim.outside.text import one_line
 from tactsim.plotting import figures_for
-from tactsim.plotting.canvas import encoded
+from tactsim.plotting.canvas import Figures, encoded, picture
 from tactsim.results import Result, read_result, write_result
 from tactsim.units import format_quantity
 
@@ -52,7 +51,7 @@ def figures(result: Result, name: str | None = None) -> dict[str, Figure] | Figu
     """
     drawings: dict[str, Any] = {Path(file).stem: draw for file, draw in figures_for(result).items()}
     if name is None:
-        return {stem: draw.figure() for stem, draw in drawings.items()}
+        return Figures({stem: draw.figure() for stem, draw in drawings.items()})
     if name not in drawings:
         raise UnknownName("figure", name, drawings)
     figure: Figure = drawings[name].figure()
@@ -115,7 +114,5 @@ def html(result: Result) -> str:
     lines += [f"<p>warning: {markup.escape(one_line(warning))}</p>" for warning in result.warnings]
     first = next(iter(figures_for(result).values()), None)
     if first is not None:
-        lines.append(
-            f'<img alt="{title}" style="max-width:100%" src="data:image/png;base64,{base64.b64encode(first()).decode()}">'
-        )
+        lines.append(picture(result.title or result.kind, first()))
     return "\n".join(lines)

@@ -114,6 +114,28 @@ DIMENSIONS = {
 """SI unit of a dimension -> its name, and an example."""
 
 
+SHOWN_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
+"""Exponent of the factor of a prefix in which numbers are shown -> its symbol."""
+PLAIN = frozenset({"m", "s", "A", "Hz", "N", "Pa", "J", "W", "C", "V", "F", "S"})
+"""Units that most quantities have; a prefix before one of them can be nothing else."""
+
+
+@cache
+def _powers_of_ten() -> dict[str, int]:
+    """Prefix, as name or symbol -> the exponent of its factor."""
+    powers = {"": 0}
+    for line in PREFIXES:
+        exponent = line.split("=")[1].partition("e")[2]
+        powers |= {name.removesuffix("-"): int(exponent) for name in _names(line) if name.endswith("-")}
+    return powers
+
+
+def prefix_power(unit: str, given_unit: str) -> int | None:
+    """The exponent of ten by which a plain unit with an SI prefix differs from it; None of any other pair."""
+    prefix = given_unit.removesuffix(unit) if unit in PLAIN and given_unit.endswith(unit) else None
+    return None if prefix is None else _powers_of_ten().get(prefix)
+
+
 @cache
 def customary_words() -> frozenset[str]:
     """Every spelling of a customary unit, with its prefixes."""

@@ -11,7 +11,7 @@ import re
 import sys
 from collections.abc import Callable, Mapping
 from decimal import Decimal
-from functools import cache, lru_cache
+from functools import lru_cache
 from typing import Annotated, Any, TypeVar
 
 from pydantic import (
@@ -24,7 +24,8 @@ from pydantic import (
 )
 
 from tactsim.errors import InvalidQuantity, shown
-from tactsim.unit_definitions import DIMENSIONS, FEW_UNITS, PREFIXED, PREFIXES, RARE_PREFIXES, UNPREFIXED, customary_words
+from tactsim.unit_conversion import OtherDimension, are_compatible, compact, factor_to, is_known, unusual_word
+from tactsim.unit_definitions import DIMENSIONS, FEW_UNITS
 
 _QUANTITY = re.compile(
     r"(?P<number>[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|nan|inf(?:inity)?))(?:\s*(?P<unit>[^\s\d.].*|1\s*/.*))?",
@@ -38,44 +39,10 @@ _UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:
 DECIMAL_POINT = "decimals begin with a point, not a comma"
 
 
-@cache
-def _registry() -> Any:
-    import pint
-
-    return pint.UnitRegistry([*PREFIXES, *PREFIXED, *UNPREFIXED], cache_folder=None)
-
-
-@lru_cache(maxsize=1024)
-def _factor_to(unit: str, given_unit: str) -> float:
-    """How many ``unit`` one ``given_unit`` is."""
-    zero, one = (float(_registry().Quantity(value, given_unit).to(unit).magnitude) for value in (0.0, 1.0))
-    if zero:
-        raise ValueError(f"{given_unit} does not begin at zero")
-    return one
-
-
-@lru_cache(maxsize=1024)
-def _unusual_unit(given_unit: str) -> str | None:
-    """The first word of a unit that pint reads, but none that tissue is measured in."""
-    import pint
-
-    for word in re.findall(_WORD, given_unit):
-        if word not in customary_words() and pint.UnitRegistry(cache_folder=None).parse_unit_name(word):
-            return str(word)
-    return None
-
-
 @lru_cache(maxsize=1024)
 def is_unit(text: str) -> bool:
     """Whether ``text`` is a unit that numbers can be shown in; "" and "1" are that of a plain number."""
-    import pint
-
-    if text in ("", "1"):
-        return True
-    try:
-        return bool(_UNIT.fullmatch(text)) and bool(_registry().Quantity(1.0, text))
-    except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
-        return False
+    return text in ("", "1") or (_UNIT.fullmatch(text) is not None and is_known(text))
 
 
 @lru_cache(maxsize=1024)
@@ -83,7 +50,7 @@ def _asked(unit: str) -> str:
     """What a message asks for where a quantity of the dimension of ``unit`` belongs."""
     if unit in ("", "1", "%"):
         return "a number with its unit, such as '1 %'"
-    known = (words for other, words in DIMENSIONS.items() if _registry().is_compatible_with(other, unit))
+    known = (words for other, words in DIMENSIONS.items() if are_compatible(other, unit))
     name, example = next(known, ("a number", f"1 {unit}"))
     return f"{name} with its unit, such as {example!r}"
 
@@ -96,7 +63,6 @@ def parse_quantity(text: str, unit: str) -> float:
     InvalidQuantity
         If the text is not a finite number with a customary unit of the same dimension, or a number so small that it becomes 0.
     """
-    import pint
 
     def expected() -> str:
         return f"expected {_asked(unit)}"
@@ -117,15 +83,15 @@ def parse_quantity(text: str, unit: str) -> float:
         raise InvalidQuantity(f"{shown(text)} has no unit; {expected()}")
     if not _UNIT.fullmatch(given_unit):
         raise unknown()
-    if unusual := _unusual_unit(given_unit):
+    if unusual := unusual_word(re.findall(_WORD, given_unit)):
         raise InvalidQuantity(
             f"{shown(text)} is in {shown(unusual)}, which is not a unit that is read; allowed are {FEW_UNITS} ..."
         )
     try:
-        converted = _converted(parts["number"], _factor_to(unit, given_unit))
-    except pint.DimensionalityError:
+        converted = _converted(parts["number"], factor_to(unit, given_unit))
+    except OtherDimension:
         raise InvalidQuantity(f"{shown(text)} has the wrong dimension; {expected()}") from None
-    except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
+    except ValueError:
         raise unknown() from None
     if not math.isfinite(converted):
         raise InvalidQuantity(f"{shown(text)} is not finite; {expected()}")
@@ -160,11 +126,9 @@ def conversion(given_unit: str, unit: str) -> float:
     InvalidQuantity
         If either is unknown, or their dimensions differ.
     """
-    import pint
-
     try:
-        return _factor_to(unit or "1", given_unit or "1") if (unit or "1") != (given_unit or "1") else 1.0
-    except (pint.errors.PintError, ArithmeticError, ValueError, TypeError, AttributeError, AssertionError):
+        return factor_to(unit or "1", given_unit or "1") if (unit or "1") != (given_unit or "1") else 1.0
+    except ValueError:
         raise InvalidQuantity(f"{shown(unit)} is not a unit of what is in {shown(given_unit)}") from None
 
 
@@ -172,16 +136,7 @@ def compact_unit(value: float, unit: str) -> str:
     """The unit with the SI prefix in which a value in SI reads well, such as ``kPa``."""
     if unit in ("", "1", "rad") or not value or not math.isfinite(value):
         return unit
-    return f"{_compact(value, unit).units:~C}".replace("**", "^")
-
-
-def _compact(value: float, unit: str) -> Any:
-    """The quantity with the SI prefix in which it reads well, from p to G, else as it is; nobody speaks of megaseconds."""
-    quantity = _registry().Quantity(value, unit)
-    if unit == "s" and abs(value) >= 1:
-        return quantity
-    compact = quantity.to_compact()
-    return quantity if any(word.startswith(RARE_PREFIXES) for word, _ in compact.unit_items()) else compact
+    return compact(value, unit, "C")[1].replace("**", "^")
 
 
 def format_quantity(value: float, unit: str) -> str:
@@ -192,8 +147,8 @@ def format_quantity(value: float, unit: str) -> str:
         return f"{value:g} {unit}"
     if unit == "rad":
         return f"{math.degrees(value):.5g}°"
-    quantity = _compact(value, unit)
-    return f"{quantity.magnitude:.5g} {quantity.units:~P}"
+    number, compact_unit = compact(value, unit, "P")
+    return f"{number:.5g} {compact_unit}"
 
 
 def _is_pint(value: Any) -> bool:
@@ -238,10 +193,10 @@ def written_quantity(value: float, unit: str) -> str:
     if unit == "rad" and parse_quantity(degrees := f"{math.degrees(value):.15g} deg", unit) == value:
         return degrees
     if value and math.isfinite(value) and unit != "rad":
-        compact = _compact(value, unit)
-        given_unit = f"{compact.units:~C}".replace("**", "^")
-        power = _power_of_ten(_factor_to(unit, given_unit))
-        number = f"{compact.magnitude:.15g}" if power is None else _shifted(value, -power)
+        magnitude, spelled = compact(value, unit, "C")
+        given_unit = spelled.replace("**", "^")
+        power = _power_of_ten(factor_to(unit, given_unit))
+        number = f"{magnitude:.15g}" if power is None else _shifted(value, -power)
         if parse_quantity(text := f"{number} {given_unit}", unit) == value:
             return text
     return f"{_shifted(value, 0)} {unit}"

@@ -194,7 +194,9 @@ def test_a_result_shows_itself(result: ts.Result) -> None:
     html = result._repr_html_()
     assert "converged" in html
     assert "largest_displacement" in html
-    assert "data:image/png;base64," in html
+    assert html.count("data:image/png;base64,") == 1
+    assert result.plot()._repr_html_().count("data:image/png;base64,") == len(result.plot())  # at the end of a cell of a notebook
+    assert result.plot("closed_form")._repr_png_().startswith(b"\x89PNG")
     assert repr(result).startswith("<Result of closed_form: converged")
     assert result.plot("closed_form").get_size_inches()[0] > 3
     with pytest.raises(UnknownName, match=r"unknown figure 'closed_from' \(did you mean 'closed_form'\?\); known: closed_form"):

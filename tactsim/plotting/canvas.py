@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import html as markup
 import io
 import textwrap
 from abc import abstractmethod
@@ -56,9 +58,29 @@ doi:10.1371/journal.pone.0199239.
 """
 
 
+class ShownFigure(Figure):
+    """A figure that a notebook shows as a picture at the end of a cell, though pyplot did not make it."""
+
+    def _repr_png_(self) -> bytes:
+        return encoded(self)
+
+
+class Figures(dict[str, Figure]):
+    """Figures by name; a notebook shows all of them, in their order, instead of the words of a mapping."""
+
+    def _repr_html_(self) -> str:
+        return "\n".join(picture(name, encoded(figure)) for name, figure in self.items())
+
+
+def picture(name: str, content: bytes) -> str:
+    """A PNG as it stands in HTML."""
+    source = base64.b64encode(content).decode()
+    return f'<img alt="{markup.escape(name)}" style="max-width:100%" src="data:image/png;base64,{source}">'
+
+
 def new_figure(width: float, height: float) -> Figure:
     """An empty figure of a size in inches."""
-    figure = Figure(figsize=(width, height), layout="constrained")
+    figure = ShownFigure(figsize=(width, height), layout="constrained")
     FigureCanvasAgg(figure)
     return figure
 

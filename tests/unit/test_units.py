@@ -10,8 +10,9 @@ import pytest
 from pydantic import TypeAdapter, ValidationError
 
 from tactsim.errors import InvalidQuantity
-from tactsim.unit_definitions import PREFIXED, UNPREFIXED
-from tactsim.units import Length, _factor_to, compact_unit, format_quantity, parse_quantity, written_quantity
+from tactsim.unit_conversion import _registry, compact, factor_to
+from tactsim.unit_definitions import PLAIN, PREFIXED, SHOWN_PREFIXES, UNPREFIXED, _powers_of_ten
+from tactsim.units import Length, compact_unit, format_quantity, parse_quantity, written_quantity
 
 
 @pytest.mark.parametrize(
@@ -116,7 +117,27 @@ def test_customary_units_are_those_of_pint() -> None:
             if "°" in word or name in ("degree", "percent", "degree_Celsius", "kelvin", "radian"):
                 continue  # no dimension, or an offset
             expected = everything.Quantity(1.0, word).to(unit).magnitude
-            assert _factor_to(unit, word) == pytest.approx(expected, rel=1e-14), word
+            assert factor_to(unit, word) == pytest.approx(expected, rel=1e-14), word
+
+
+@pytest.mark.parametrize("unit", sorted(PLAIN))
+def test_a_plain_unit_is_read_and_shown_with_a_prefix_as_pint_does_it(unit: str) -> None:
+    """What no library is loaded for, against the library."""
+    pints = _registry()
+    for prefix, power in _powers_of_ten().items():
+        assert (
+            factor_to(unit, prefix + unit) == float(f"1e{power}") == float(pints.Quantity(1.0, prefix + unit).to(unit).magnitude)
+        )
+    generator = np.random.default_rng(4)
+    values = 10.0 ** generator.uniform(-15, 15, 300) * generator.choice([-1, 1], 300)
+    for value in (*values.tolist(), 1e-3, 1000.0, 999.9999):
+        expected = pints.Quantity(value, unit)
+        short = expected.to_compact()
+        if f"{short.units:~P}".removesuffix(unit) in SHOWN_PREFIXES.values() and not (unit == "s" and abs(value) >= 1):
+            expected = short
+        for style in "PC":
+            number, text = compact(value, unit, style)
+            assert (f"{number:.5g}", text) == (f"{expected.magnitude:.5g}", format(expected.units, f"~{style}"))
 
 
 def test_a_prefix_does_not_make_a_unit_out_of_another() -> None:

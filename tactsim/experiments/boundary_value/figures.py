@@ -44,6 +44,9 @@ MOST_CURVES = 6
 """Curves in the second panel."""
 ALIKE = 5e-3
 """Curves of a largest magnitude of one that differ by less are drawn as one."""
+STRESSED, SPECK = 0.1, 0.15
+"""Part of the top of the colours from which a place counts as stressed, and part of the body's size below which such places are a
+speck in its picture."""
 LONGEST_LINEAR = 1e3
 """Ratio of the last to the first positive time above which the time is drawn on a logarithmic axis."""
 
@@ -144,17 +147,49 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
     stress = np.asarray(frame.cell_data[VON_MISES]).ravel()
     factor, unit = scale_of(float(stress.max()), "Pa")
     values, corners = factor * stress[owners], flat[polygons]
-    low, high = robust_limits(values, np.ones(len(values)))
+    weights = np.ones(len(values))
     style: dict[str, Any] = {"cmap": PRESSURE_COLOURS, "edgecolors": "face", "linewidths": 0.2, "rasterized": True}
     drawn = PolyCollection(list(corners), array=values, **style)
-    drawn.set_clim(low, high)
     axis.add_collection(drawn)
-    bar = axis.figure.colorbar(drawn, ax=axis, extend=extension(values, (low, high)), location="bottom", shrink=0.6, aspect=32)
+    axis.autoscale_view()
+    words = f"deformed, at {format_quantity(frame.time, 's')}"
+    stressed = values > STRESSED * robust_limits(values, weights)[1]
+    if dimension != "3d" and _frame_stressed(axis, corners[stressed]):
+        words += "; the stressed part"
+        weights = _areas_shown(axis, corners)
+    shown = weights > 0
+    low, high = robust_limits(values[shown], weights[shown])
+    drawn.set_clim(low, high)
+    bar = axis.figure.colorbar(
+        drawn, ax=axis, extend=extension(values[shown], (low, high)), location="bottom", shrink=0.6, aspect=32
+    )
     bar.set_label(f"von Mises stress in {unit}")
     bar.outline.set_linewidth(0.5)
-    axis.autoscale_view()
-    axis.set_title(f"deformed, at {format_quantity(frame.time, 's')}", loc="left")
+    axis.set_title(words, loc="left")
     _framed(axis, dimension)
+
+
+def _frame_stressed(axis: Axes, corners: Array) -> bool:
+    """Show the neighbourhood of these triangles (n, 3, 2) alone if they are a speck of the body, as under a punch; whether so."""
+    if not len(corners):
+        return False
+    least, most = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
+    whole = np.array([axis.get_xlim(), axis.get_ylim()])
+    reach = float((most - least).max())
+    if reach > SPECK * float(np.ptp(whole, axis=1).max()):
+        return False
+    middle = (least + most) / 2
+    low, high = np.maximum(middle - 1.5 * reach, whole[:, 0]), np.minimum(middle + 1.5 * reach, whole[:, 1])
+    axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
+    return True
+
+
+def _areas_shown(axis: Axes, corners: Array) -> Array:
+    """Area (n,) of each triangle (n, 3, 2) whose middle is in the picture, 0 of the others."""
+    sides, middles = corners[:, 1:] - corners[:, :1], corners.mean(axis=1)
+    limits = np.array([axis.get_xlim(), axis.get_ylim()])
+    inside = ((middles >= limits[:, 0]) & (middles <= limits[:, 1])).all(axis=1)
+    return np.abs(np.linalg.det(sides)) / 2 * inside
 
 
 def _framed(axis: Axes, dimension: str) -> None:

@@ -28,6 +28,7 @@ PER_INCLUSION = {
     "inclusion_shear_modulus": ("Pa", "small-strain shear modulus"),
     "inclusion_contrast": ("1", "shear modulus over that of the tissue, both at rest"),
 }
+CENTER = "centre (x, y, z): x grows with the column, y with the row, z is the height above the lower face"
 PER_SAMPLE = {
     "tissue_shear_modulus": ("Pa", "small-strain shear modulus of the tissue"),
     "friction": ("1", "coefficient of friction at the jaws; NaN of a law that has none"),
@@ -66,7 +67,7 @@ class GraspRecorder(Recorder):
                 Variable("inclusion_kind", "1", "kind", "label", ("inclusion",), (count,), "uint8", inclusion_kinds())
             )
             variables += [label(name, unit, words, inclusion=count) for name, (unit, words) in PER_INCLUSION.items()]
-            variables.append(label("inclusion_center", "m", "centre, x along the columns", inclusion=count, axis=3))
+            variables.append(label("inclusion_center", "m", CENTER, inclusion=count, axis=3))
             variables.append(label("inclusion_direction", "1", "unit vector along a tube", inclusion=count, axis=3))
         return variables
 
@@ -132,7 +133,7 @@ class GraspRecorder(Recorder):
         return (
             "A block of soft tissue with lumps or arteries, grasped between two jaws with matrices of force sensors: finite "
             "strain, nearly or exactly incompressible tissue, unilateral contact with Coulomb friction, by finite elements. "
-            "Row 1 is nearest the front (smallest y), column 1 has the smallest x, jaw 0 is the upper one."
+            "The first row is nearest the front (smallest y), the first column has the smallest x, jaw 0 is the upper one."
         )
 
 

@@ -35,7 +35,7 @@ PENETRATION_OF_CLOSING = 1e-2
 
 
 class Block(FrozenModel):
-    """The block of tissue, from (0, 0, 0) on the lower jaw, x along the columns of the taxels, y along their rows.
+    """The block of tissue, from (0, 0, 0) on the lower jaw, x growing with the column of a taxel, y with its row.
 
     >>> import tactsim as ts
     >>> block = ts.Block(size=("40 mm", "40 mm", "20 mm"), tissue="icf_stable")

@@ -271,6 +271,7 @@ def _pardiso_binding(kind: int) -> Any:
     """
     _tell_where_mkl_is()
     wait_without_spinning()
+    os.environ.setdefault("MKL_CBWR", "AUTO,STRICT")  # else a sum depends on where its numbers lie in memory, anew in each run
     try:
         import pypardiso  # makes a solver of its own, so that it raises too
 

@@ -11,6 +11,8 @@ import pytest
 from tactsim import __version__
 from tactsim.cli import command_schema, entry, main
 
+STORED_GRASP = str(Path(__file__).parents[3] / "cases" / "stored" / "grasp_lump")
+
 
 def test_help_names_every_command_and_exit_code(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--help"]) == 0
@@ -100,6 +102,23 @@ def test_help_is_quick_because_it_imports_nothing_heavy() -> None:
     code = "import sys; from tactsim.cli import main; main(['--help']); print(*sys.modules, file=sys.stderr)"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert not {"numpy", "pydantic", "pint", "ruamel", "matplotlib", "meshio"} & set(done.stderr.split())
+
+
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [
+        (["run", "annulus_icf", "--set", "experiment.reces=1 mm"], 2),
+        (["material", "icf_stable"], 0),
+        (["show", STORED_GRASP], 0),
+    ],
+)
+def test_what_needs_plain_units_alone_does_not_wait_for_pint(words: list[str], code: int) -> None:
+    """Which takes a third of a second to load, with Dask where that is installed."""
+    program = f"import sys; from tactsim.cli import main; code = main({words!r}); print(code, *sys.modules, file=sys.stderr)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    answered, *loaded = done.stderr.splitlines()[-1].split()
+    assert int(answered) == code
+    assert not {"pint", "dask", "scipy.optimize", "matplotlib", "numba"} & set(loaded)
 
 
 @pytest.mark.parametrize("action", ["check", "info", "export", "rank", "train", "confusion"])

@@ -52,7 +52,7 @@ def _draw_moduli(axis: Axes, result: Result, frequency: Array) -> None:
     errors = [result.quantities[f"{name}_modulus_error"].numbers for name in ("storage", "loss")]
     for values, error, colour, words in zip((storage, loss), errors, (LOAD, DISPLACEMENT), ("storage", "loss"), strict=True):
         axis.errorbar(frequency, values / 1e3, 2 * error / 1e3, fmt="o", color=colour, markersize=4, capsize=3, label=words)
-    axis.plot(frequency, np.hypot(storage, loss) / 1e3, "s", color="#555555", markersize=3, label="complex, its size")
+    axis.plot(frequency, np.hypot(storage, loss) / 1e3, "s", color="#555555", markersize=3, label="magnitude")
     true = _true_modulus(result)
     if true is not None:
         curves, modulus = true

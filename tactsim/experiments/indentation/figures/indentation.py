@@ -135,21 +135,16 @@ def _draw_rise(axis: Axes, displacement: Array, rise: Array, result: Result) -> 
 
 
 def _mark_threshold(axis: Axes, result: Result, along: float, up: float) -> None:
-    """A ring where the tissue touches the inner sensor, labelled with pressure and force."""
+    """A ring where the tissue touches the inner sensor; pressure and force begin the title."""
     names = ("threshold_displacement", "threshold_force", "threshold_pressure")
     if not all(name in result.quantities for name in names):
         return
     at, force, pressure = (result.quantities[name] for name in names)
     axis.plot(at.value * along, force.value * up, "o", color=FORCE_COLOUR, markersize=9, fillstyle="none", markeredgewidth=1.8)
     formatted = [format_quantity(q.value, q.unit) for q in (pressure, force, at)]
-    axis.text(
-        0.04,
-        0.86,
-        f"threshold\n{formatted[0]} on the annulus\n{formatted[1]} at {formatted[2]}",
-        transform=axis.transAxes,
-        va="top",
-        color=FORCE_COLOUR,
-    )
+    # Above the curves, which leave no place between them that is free in every run.
+    words = f"threshold (ring): {formatted[0]} on the annulus,\n{formatted[1]} at {formatted[2]}; {axis.get_title(loc='left')}"
+    axis.set_title(words, loc="left")
 
 
 def _mark_last(axis: Axes, result: Result, along: float, up: float) -> None:

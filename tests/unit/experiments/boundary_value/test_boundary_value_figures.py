@@ -1,0 +1,46 @@
+"""The picture of a boundary value problem."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+from skfem import MeshTri
+
+from tactsim.experiments.boundary_value.figures import draw_body
+from tactsim.plotting.canvas import new_figure
+from tactsim.results import FieldFrame
+from tactsim.results.fields import DISPLACEMENT, VON_MISES
+
+
+def drawn(size: float, reach: float) -> Axes:
+    """A square of a width in m whose stress in Pa decays from its upper left corner as under a punch of a radius in m."""
+    along = np.append(0.0, np.geomspace(1e-4 * size, size, 30))
+    mesh = MeshTri.init_tensor(along, size - along[::-1])
+    corners = mesh.p.T[mesh.t.T]  # (triangle, corner, axis)
+    nodes = np.concatenate([corners, (corners + np.roll(corners, -1, axis=1)) / 2], axis=1).reshape(-1, 2)
+    points, cells = np.column_stack([nodes, np.zeros(len(nodes))]), np.arange(len(nodes)).reshape(-1, 6)
+    middles = points[cells[:, :3]].mean(axis=1)
+    stress = 1e3 / (1 + (np.hypot(middles[:, 0], size - middles[:, 1]) / reach) ** 2) if reach else np.zeros(len(cells))
+    frame = FieldFrame(1.0, points, {"triangle6": cells}, {DISPLACEMENT: np.zeros_like(points)}, {VON_MISES: stress[:, None]})
+    axis = new_figure(5, 4).add_subplot()
+    draw_body(axis, frame, "axisymmetric")
+    return axis
+
+
+@pytest.mark.parametrize("reach", [0.0, 0.5, 1e9])
+def test_a_body_that_is_stressed_in_large_parts_or_nowhere_is_shown_whole(reach: float) -> None:
+    axis = drawn(1.0, reach)
+    assert axis.get_xlim()[1] >= 1e3
+    assert axis.get_title(loc="left") == "deformed, at 1 s"
+
+
+def test_of_a_body_that_is_stressed_in_a_speck_this_part_is_shown() -> None:
+    """A disc of 1 mm on a body of 1 m was one dark square."""
+    axis = drawn(1.0, 1e-3)
+    (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
+    assert (right < 30, bottom > 970, top >= 1e3, left <= 0) == (True,) * 4
+    assert axis.get_title(loc="left") == "deformed, at 1 s; the stressed part"
+    (picture,) = axis.collections
+    low, high = picture.get_clim()
+    assert 0 < low < high < 1e3
