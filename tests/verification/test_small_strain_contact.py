@@ -1,7 +1,7 @@
 """Indentation at small displacement against exact linear contact: annulus, punch and sphere, half-space and layers.
 
 Mutants: a Poisson's ratio of 0.49 (the exact solutions have 1/2), the half-space below a layer, the rise over the undeformed
-surface instead of the face, and for the sphere its diameter and Young's modulus for E / (1 - nu^2).
+surface instead of the face, for the sphere its diameter and Young's modulus for E / (1 - nu^2), and tissue without its skin.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from tactsim.experiments.indentation.displaced import StepSettings
 from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.materials.linear_elastic import LinearElastic
-from tactsim.mechanics.models.specimen import Specimen
+from tactsim.mechanics.models.specimen import Layer, Specimen
 
 RADIUS = 3e-3
 SHEAR_MODULUS = 1000.0
@@ -54,20 +54,38 @@ QUICK_PUNCH_LAYERS = [(1.0, "fixed", 3.6187), (1.0, "slipping", 2.1986)]
 PUNCH_LAYERS = [(0.2, "fixed", 1.2806), (1.0, "fixed", 3.6187), (2.0, "fixed", 9.1495), (1.0, "slipping", 2.1986)]
 
 
+def elastic(shear_modulus, poisson_ratio):
+    return LinearElastic(youngs_modulus=2 * (1 + poisson_ratio) * shear_modulus, poisson_ratio=poisson_ratio)
+
+
+BALLS = [
+    # a/h, Poisson's ratio, d R / a^2, force over Hertz's at the same depth: the dual integral equations of Hayes et al. 1972
+    (0.5, 0.3, 0.75887, 1.59085),
+    (1.0, 0.4, 0.61881, 2.69209),
+    (1.0, 0.5, 0.55948, 3.37056),
+]
+SKINS = [
+    # G of the skin over that below, Poisson's ratios of both, P / (8 G a d) with G below: a skin of 0.5 a on a layer of 3.5 a
+    (5.0, 0.5, 0.5, 1.98283),
+    (5.0, 0.3, 0.45, 1.63923),
+    (0.1, 0.4, 0.2, 0.31370),
+]
+
+
 @cache
-def press(body, thickness, *, displacement=DISPLACEMENT, base="fixed", friction=0.0, poisson_ratio=0.5, finest=1e-3 * RADIUS):
-    """Dimensionless force P / (8 G a d) and height of the axis over the displacement."""
-    material = LinearElastic(youngs_modulus=2 * (1 + poisson_ratio) * SHEAR_MODULUS, poisson_ratio=poisson_ratio)
+def press(body, thickness, *, displacement=DISPLACEMENT, base="fixed", friction=0.0, poisson_ratio=0.5, layers=(), **sizes):
+    """Force in N, and height of the axis in m; what is below the layers has ``SHEAR_MODULUS`` and ``poisson_ratio``."""
+    material = elastic(SHEAR_MODULUS, poisson_ratio)
     width = thickness if thickness >= HALF_SPACE else 20 * max(thickness, RADIUS)
     experiment = Indentation(
-        specimen=Specimen(material=material, thickness=thickness, radius=width, base=base),
+        specimen=Specimen(material=material, thickness=thickness, radius=width, base=base, layers=layers),
         body=body,
         contact=Coulomb(friction=friction),
         recess=thickness / 2 if body.kind == "annulus" else None,
         stop="displacement",
         displacement=displacement,
         penetration_tolerance=1e-2 * displacement,
-        mesh=MeshSettings(finest=finest, growth=0.5),
+        mesh=MeshSettings(**{"finest": 1e-3 * RADIUS, "growth": 0.5} | sizes),
         steps=StepSettings(first=displacement, largest=displacement),
     )
     result = experiment.run()
@@ -157,6 +175,39 @@ def test_punch_on_compressible_layer(poisson_ratio, factor):
     force, _ = press(Punch(radius=RADIUS), RADIUS, poisson_ratio=poisson_ratio)
     check_force(force, factor / (2 * (1 - poisson_ratio)))
     assert_kills(check_force, incompressible=(force, 3.6187), without_the_ratio=(force, factor))
+
+
+@pytest.mark.parametrize(
+    ("ratio", "poisson_ratio", "depth", "factor"),
+    [pytest.param(*row, marks=() if row[1] == 0.4 else pytest.mark.slow) for row in BALLS],
+)
+def test_ball_far_wider_than_a_bonded_layer(ratio, poisson_ratio, depth, factor, verification_record):
+    radius = 1e3 * RADIUS  # a flat cap: at 50 times, the inward slip of a compressible surface costs 0.5 % of the force
+    displacement = depth * RADIUS**2 / radius
+    thickness, size = RADIUS / ratio, RADIUS / 25
+    force, _ = press(Sphere(radius=radius), thickness, displacement=displacement, poisson_ratio=poisson_ratio, finest=size)
+
+    def found(poisson_ratio):
+        return force / (8 / 3 * SHEAR_MODULUS / (1 - poisson_ratio) * radius**0.5 * displacement**1.5)
+
+    def check(expected, poisson_ratio=poisson_ratio):
+        assert found(poisson_ratio) == pytest.approx(expected, rel=FORCE_TOLERANCE)
+
+    check(factor)
+    known = {"reference": "Hayes et al. 1972, equations solved anew", "kind": "exact", "mesh": "axisymmetric, 25 elements"}
+    verification_record("ball on bonded layer, force", found(poisson_ratio), factor, tolerance=FORCE_TOLERANCE, **known)
+    assert_kills(check, half_space=(1.0,), poisson_ratio=(factor, poisson_ratio - 0.02))
+
+
+@pytest.mark.parametrize(("ratio", "above", "below", "factor"), SKINS)
+def test_punch_on_skin(ratio, above, below, factor, verification_record):
+    skin = Layer(thickness=0.5 * RADIUS, material=elastic(ratio * SHEAR_MODULUS, above))
+    force, _ = press(Punch(radius=RADIUS), 4 * RADIUS, poisson_ratio=below, layers=(skin,), growth=0.25)  # in the skin, too
+    check_force(force, factor)
+    known = {"reference": "dual integral equations of two bonded layers, solved anew", "kind": "exact", "mesh": GRADED}
+    verification_record("punch on a skin, force", normalised(force), factor, tolerance=FORCE_TOLERANCE, **known)
+    without, _ = press(Punch(radius=RADIUS), 4 * RADIUS, poisson_ratio=below)
+    assert_kills(check_force, without_skin=(without, factor))
 
 
 def test_punch_on_half_space(verification_record):

@@ -38,7 +38,9 @@ class FaceCondition(Condition):
     face: str
     """Name of the face, as the geometry has it."""
     within: dict[str, tuple[Length, Length]] | None = None
-    """The part of the face between two values of a coordinate, such as ``{r: [0 mm, 1 mm]}``; by default all of it."""
+    """The part of the face between two values of a coordinate, such as ``{r: [0 mm, 1 mm]}``; by default all of it.
+
+    A round body has the distance ``r`` from its axis in 3D, too."""
 
 
 class Components(FrozenModel):

@@ -88,9 +88,7 @@ class Parts:
         inside, touched = np.ones(len(facets), bool), np.ones(len(facets), bool)
         slack = AT_NODE * self.size
         for name, (low, high) in (condition.within or {}).items():
-            if name not in self.axes:
-                raise ValueError(f"within: there is no coordinate {name}; allowed: {', '.join(self.axes)}")
-            along = self.domain.mesh.nodes[facets][..., self.axes.index(name)]
+            along = self._along(name, self.domain.mesh.nodes[facets])
             inside &= ((along >= low - slack) & (along <= high + slack)).all(axis=1)
             touched &= (along.max(axis=1) > low + slack) & (along.min(axis=1) < high - slack)
         if (cut := facets[touched & ~inside]).size:
@@ -100,6 +98,22 @@ class Parts:
                 f"within: no facet of {condition.face} lies within {condition.within}; let cells end there, or take a wider part"
             )
         return facets[inside]
+
+    def _along(self, name: str, places: Array) -> Array:
+        """A coordinate in m of places (..., d); in space, a round body has the distance ``r`` from its axis, too.
+
+        Raises
+        ------
+        ValueError
+            If there is no such coordinate.
+        """
+        if name in self.axes:
+            return np.asarray(places[..., self.axes.index(name)])
+        turned = self.dimension == "3d" and "outer" in self.domain.faces
+        if name == "r" and turned:
+            return np.hypot(places[..., 0], places[..., 1])
+        allowed = ", ".join((*self.axes, *(("r",) if turned else ())))
+        raise ValueError(f"within: there is no coordinate {name}; allowed: {allowed}")
 
     def node(self, place: Sequence[float]) -> int:
         """The node at a place in m.
@@ -141,7 +155,7 @@ class Parts:
         """That a facet reaches across an end of the part that a condition means."""
         slack = AT_NODE * self.size
         for name, ends in (condition.within or {}).items():
-            along = self.domain.mesh.nodes[facet][:, self.axes.index(name)]
+            along = self._along(name, self.domain.mesh.nodes[facet])
             low, high = float(along.min()), float(along.max())
             for end in ends:
                 if low + slack < end < high - slack:

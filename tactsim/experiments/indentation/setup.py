@@ -107,8 +107,9 @@ class IndentationSetup(FrozenModel):
     recess: Positive[Length] | None = None
     """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
     penetration_tolerance: Annotated[Length, Field(ge=1e-10)] | None = None
-    """Largest penetration at any surface quadrature point; by default 1e-4 of the body's radius, at most 2e-3 of a prescribed
-    displacement. At most a tenth of that displacement, of the contact's width, of a fillet and of the thinnest layer."""
+    """Largest penetration at any surface quadrature point; by default 1e-4 of the radius of the body, or of a narrower specimen,
+    at most 2e-3 of a prescribed displacement. At most a tenth of that displacement, of the contact's width, of a fillet and of
+    the thinnest layer."""
     mesh: MeshSettings = MeshSettings()
     """Size of the elements."""
 
@@ -146,8 +147,10 @@ class IndentationSetup(FrozenModel):
     @model_validator(mode="after")
     def _fitting(self) -> Self:
         width = format_quantity(self.specimen.radius, "m")
-        if self.body.contact_shape.radius is not None and self.contact_radius >= self.specimen.radius:
-            given = format_quantity(self.contact_radius, "m")
+        shape = self.body.contact_shape
+        bounded = shape.tip is None or shape.tip.within_radius  # of a ball only a cap touches, however wide it is
+        if shape.radius is not None and bounded and shape.radius >= self.specimen.radius:
+            given = format_quantity(shape.radius, "m")
             raise ValueError(f"specimen.radius: {width} is too small for a body of radius {given}; allowed: more than that")
         largest = max(self.specimen.radius, self.specimen.thickness)
         if largest > LARGEST_RATIO * self.contact_radius:
@@ -183,9 +186,8 @@ class IndentationSetup(FrozenModel):
 
     @property
     def contact_radius(self) -> float:
-        """Radius in m that the body's size is measured by."""
-        radius = self.body.contact_shape.radius
-        return self.specimen.radius if radius is None else radius
+        """Radius in m that the body's size is measured by: its own, or that of the specimen if the body is wider."""
+        return min(self.body.contact_shape.reach, self.specimen.radius)
 
     @property
     def hole(self) -> float:
@@ -210,7 +212,7 @@ class IndentationSetup(FrozenModel):
             rims, reach = tuple(r for r in (shape.hole, radius) if 0 < r < specimen.radius), shape.fillet or 0.0
             usual = reach / 3 if reach > 0 else radius / 50
         else:
-            reach = 1.5 * float(np.sqrt(radius * self.depth))
+            reach = 1.5 * float(np.sqrt((shape.radius or radius) * self.depth))
             if shape.tip.within_radius:
                 reach = min(reach, 1.5 * radius)
             usual, reach = reach / shape.tip.elements, min(reach, specimen.radius)

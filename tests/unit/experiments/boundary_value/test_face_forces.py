@@ -18,6 +18,17 @@ def test_a_load_within_a_part_that_ends_between_cells_is_that_of_the_part():
     assert force == pytest.approx(10 * pi * (SIDE / 2) ** 2, rel=1e-3)  # the bulk of the rest bulges, the loaded part widens
 
 
+@pytest.mark.parametrize(("part", "of_the_whole"), [("whole", 1), ("quarter", 4)])
+def test_a_round_body_in_space_has_a_radius_to_load_within(part, of_the_whole):
+    spans = [{"length": SIDE, "cells": 2}]
+    rod = {"kind": "cylinder", "radial": spans, "axial": [{"length": SIDE, "cells": 1}], "around": 2, "part": part}
+    load = {"kind": "traction", "face": "top", "z": 10.0, "within": {"r": [0.0, SIDE / 2]}}
+    held = {"kind": "clamped", "face": "bottom"}
+    question = asked("force", face="bottom", component="z", factor=-of_the_whole)
+    force = number(dimension="3d", geometry=rod, conditions=[held, load], asked=question)
+    assert force == pytest.approx(10 * pi * (SIDE / 2) ** 2, rel=2e-3)  # quarter circles of two parabolas
+
+
 def forces_of(faces="left right bottom top", axes="xy", **fields):
     """Force on each face along each axis, and the largest of them."""
     question = {f"{face}_{axis}": {"kind": "force", "face": face, "component": axis} for face in faces.split() for axis in axes}

@@ -27,6 +27,11 @@ HALF = {"x": [0.0, SIDE / 2]}
             "no coordinate r; allowed: x, y, z",
         ),
         (
+            {"geometry": BALL, "conditions": [{"kind": "clamped", "face": "outer", "within": {"q": [0.0, 1.0]}}]},
+            "conditions.0.within",
+            "no coordinate q; allowed: x, y, z, r",
+        ),
+        (
             {"conditions": [{"kind": "clamped", "face": "top", "within": {"x": [2 * SIDE, 3 * SIDE]}}]},
             "conditions.0.within",
             "no facet of top lies within",
