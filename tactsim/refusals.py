@@ -106,12 +106,12 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
     if error_type == "missing":
         return path, f"missing; expected {_expectation(fragment, schema)}"
     if error_type == "union_tag_not_found":
-        return _tag_path(context, path), f"missing; choices: {', '.join(_tags(fragment, schema))}"
+        place = _tag_path(context, path)
+        return place, f"missing; choices: {', '.join(_tags(fragment, schema, str(place[-1])))}"
     if error_type == "union_tag_invalid":
         tag, choices = str(context["tag"]), re.findall(r"'([^']*)'", context["expected_tags"])
-        return _tag_path(
-            context, path
-        ), f"unknown kind {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
+        place = _tag_path(context, path)
+        return place, f"unknown {place[-1]} {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
     if error_type in ("value_error", "assertion_error") or error_type not in _PYDANTIC_TYPES:
         return _blamed_within(path, value, str(context.get("error", detail["msg"])))
     if error_type == "finite_number":
@@ -222,13 +222,13 @@ def _members(fragment: dict[str, Any], schema: dict[str, Any]) -> Iterator[dict[
         yield from _members(member, schema)
 
 
-def _tags(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
-    return sorted({tag for member in _members(fragment, schema) if (tag := _tag(member))})
+def _tags(fragment: dict[str, Any], schema: dict[str, Any], key: str = "kind") -> list[str]:
+    return sorted({tag for member in _members(fragment, schema) if (tag := _tag(member, key))})
 
 
-def _tag(member: dict[str, Any]) -> str:
-    """The ``kind`` of a member of a union, empty if it has none."""
-    return str(member.get("properties", {}).get("kind", {}).get("const", ""))
+def _tag(member: dict[str, Any], key: str = "kind") -> str:
+    """What tells a member of a union from the others, the constant of its ``kind`` or of another key; empty if it has none."""
+    return str(member.get("properties", {}).get(key, {}).get("const", ""))
 
 
 def _keys(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
