@@ -132,7 +132,11 @@ experiment:
     ("old", "new", "message"),
     [
         (", control: displacement", "", "6: experiment.loading.control: missing; choices: displacement, force"),
-        ("control: displacement", "control: forces", r"6: .*control: unknown control 'forces' \(did you mean 'force'\?\); choices: "),
+        (
+            "control: displacement",
+            "control: forces",
+            r"6: .*control: unknown control 'forces' \(did you mean 'force'\?\); choices: ",
+        ),
         ("width: 25 mm", "width: 10 um", "7: experiment.lower.fillet: 1 mm is too large; allowed: .*, 5 µm"),
         ("[0 mm, 0 mm]", "[40 mm, 0 mm]", "7: experiment.lower.offset: at 40 mm the jaw passes beside the block; allowed: less"),
     ],
