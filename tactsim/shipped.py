@@ -24,7 +24,7 @@ def case_path(named: str | Path) -> Path:
         If it is a bare name, and no shipped case has it.
     """
     path = Path(named)
-    if not re.fullmatch(r"\w+", str(named)) or path.exists():
+    if not re.fullmatch(r"\w+", str(named)) or os.path.exists(path):
         return path
     known = {place.stem: place for place in shipped_cases()}
     if path.name not in known:
