@@ -53,7 +53,9 @@ def test_a_pool_that_is_forked_after_a_computation_is_told_and_does_not_wait_for
     script.write_text(FORKED, encoding="utf-8")
     root = str(Path(ts.__file__).parents[1])
     environment = {**os.environ, "PYTHONPATH": root, "NUMBA_THREADING_LAYER": "omp"}
-    done = subprocess.run([sys.executable, str(script)], env=environment, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(
+        [sys.executable, str(script)], env=environment, capture_output=True, text=True, timeout=120, check=False
+    )
     if "No threading layer could be loaded" in done.stderr:
         pytest.skip("numba has no OpenMP here")
     assert done.stdout.splitlines() == [

@@ -178,7 +178,12 @@ def test_a_working_folder_that_is_gone_is_told(tmp_path: Path, safe: bool) -> No
     command = [sys.executable, *(["-P"] if safe else []), "-m", "tactsim", "list", "kinds"]
     environment = {**os.environ, "PYTHONPATH": str(Path(tactsim.__file__).parents[1])}
     told = subprocess.run(
-        ["sh", "-c", 'rmdir "$PWD"; exec "$@"', "sh", *command], cwd=gone, env=environment, capture_output=True, text=True, check=False
+        ["sh", "-c", 'rmdir "$PWD"; exec "$@"', "sh", *command],
+        cwd=gone,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert told.stderr.splitlines()[-1] == "error: the working folder is gone; change to another folder"
     assert "Traceback" not in told.stderr
