@@ -14,7 +14,7 @@ PROGRAM = _PACKAGE / "_shipped" if (_PACKAGE / "_shipped").is_dir() else _PACKAG
 """The folder that holds ``cases`` and ``meshes``."""
 CASES = PROGRAM / "cases"
 LONGEST_NAME = 60
-"""Characters of a text that may be the name of a shipped case; a file name has at most 255 bytes, of which a character takes up to four."""
+"""Characters of a text that may be the name of a shipped case; a file name has 255 bytes, a character up to 4."""
 
 
 def case_path(named: str | Path) -> Path:

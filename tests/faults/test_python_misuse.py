@@ -41,12 +41,12 @@ def test_a_whole_number_beyond_all_floats_is_refused(number: int) -> None:
 
 @pytest.mark.parametrize("name", ["x" * 5000, "x" * 300, "\N{MATHEMATICAL BOLD SMALL A}" * 64])
 def test_a_name_longer_than_any_file_name_cannot_be_read(name: str) -> None:
-    with pytest.raises(StorageError, match="^cannot read the case file .*File name too long"):
+    with pytest.raises(StorageError, match=r"^cannot read the case file .*File name too long"):
         ts.load_case(name)
 
 
 def test_a_key_that_is_no_text_is_an_unknown_key() -> None:
-    with pytest.raises(ts.InputError, match="override 1: unknown key; allowed: schema, title, experiment, output"):
+    with pytest.raises(ts.InputError, match=r"override 1: unknown key; allowed: schema, title, experiment, output"):
         ts.load_case("annulus_icf", {1: 2})
 
 
