@@ -82,7 +82,7 @@ class UnknownName(InputError, LookupError):
     def __init__(self, what: str, name: str, allowed: Iterable[str], listed_by: str = ""):
         choices = sorted(allowed)
         all_of_them = f"{listed_by} lists all" if listed_by else f"known: {', '.join(choices)}"
-        super().__init__(f"unknown {what} {name!r}{suggestion(name, choices)}; {all_of_them}")
+        super().__init__(f"unknown {what} {shown(name)}{suggestion(name, choices)}; {all_of_them}")
 
 
 class AmbiguousKind(InputError):

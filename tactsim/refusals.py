@@ -110,9 +110,8 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
         return place, f"missing; choices: {', '.join(_tags(fragment, schema, str(place[-1])))}"
     if error_type == "union_tag_invalid":
         tag, choices = str(context["tag"]), re.findall(r"'([^']*)'", context["expected_tags"])
-        return _tag_path(
-            context, path
-        ), f"unknown kind {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
+        place = _tag_path(context, path)
+        return place, f"unknown {place[-1]} {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
     if error_type in ("value_error", "assertion_error") or error_type not in _PYDANTIC_TYPES:
         return _blamed_within(path, value, str(context.get("error", detail["msg"])))
     if error_type == "finite_number":
@@ -228,7 +227,7 @@ def _tags(fragment: dict[str, Any], schema: dict[str, Any], key: str = "kind") -
 
 
 def _tag(member: dict[str, Any], key: str = "kind") -> str:
-    """The ``kind`` of a member of a union, or what else tells it apart; empty if it has none."""
+    """What tells a member of a union from the others, the constant of its ``kind`` or of another key; empty if it has none."""
     return str(member.get("properties", {}).get(key, {}).get("const", ""))
 
 

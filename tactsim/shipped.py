@@ -13,6 +13,8 @@ _PACKAGE = Path(__file__).resolve().parent
 PROGRAM = _PACKAGE / "_shipped" if (_PACKAGE / "_shipped").is_dir() else _PACKAGE.parent
 """The folder that holds ``cases`` and ``meshes``."""
 CASES = PROGRAM / "cases"
+LONGEST_NAME = 60
+"""Characters of a text that may be the name of a shipped case; a file name has 255 bytes, a character up to 4."""
 
 
 def case_path(named: str | Path) -> Path:
@@ -24,7 +26,7 @@ def case_path(named: str | Path) -> Path:
         If it is a bare name, and no shipped case has it.
     """
     path = Path(named)
-    if not re.fullmatch(r"\w+", str(named)) or path.exists():
+    if not re.fullmatch(rf"\w{{1,{LONGEST_NAME}}}", str(named)) or path.exists():
         return path
     known = {place.stem: place for place in shipped_cases()}
     if path.name not in known:

@@ -81,7 +81,8 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
     overridden: dict[KeyPath, str] = {}
     overrides = [overrides] if isinstance(overrides, str) else overrides
     option = "override" if isinstance(overrides, Mapping) else "--set"
-    named = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
+    given = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
+    named = ((str(override), value) for override, value in given)
     for override, value in named:
         try:
             if isinstance(overrides, Mapping):

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import tactsim
 
-if not sys.flags.safe_path and Path(tactsim.__file__).resolve().parents[1] != Path(os.getcwd()).resolve():
-    sys.path[:] = [folder for folder in sys.path if os.path.realpath(folder or ".") != os.path.realpath(".")]
+if not sys.flags.safe_path and not os.path.samefile(Path(tactsim.__file__).resolve().parents[1], "."):
+    sys.path[:] = [folder for folder in sys.path if not (os.path.exists(folder or ".") and os.path.samefile(folder or ".", "."))]
 
 from tactsim.cli.entry import main
 

@@ -1,8 +1,9 @@
 """The one place that writes to the terminal: what others wrote cannot steer it, and a reader that has gone away (``| head``, a
-closed window) never stops a run."""
+closed window) never stops a run, nor does a full disk, but an answer that was lost on one is told when the command ends."""
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 from contextlib import suppress
@@ -10,6 +11,11 @@ from typing import TextIO
 
 from tactsim.outside.text import printable
 from tactsim.progress import notes_are_watched as notes_are_watched
+
+FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
+"""What the system says where a stream goes to a file that cannot grow."""
+_lost: list[str] = []
+"""Why an answer was lost, until the end of the command."""
 
 
 def out(text: str = "") -> None:
@@ -27,10 +33,13 @@ def error(message: str) -> None:
     note(f"error: {message}")
 
 
-def flush() -> None:
-    """Sends what is still waiting."""
+def flush() -> str:
+    """Sends what is still waiting; why a part of the answer of this command was lost, empty if none was."""
     for stream in (sys.stdout, sys.stderr):
         _guarded(stream, "")
+    lost = "".join(_lost[:1])
+    _lost.clear()
+    return lost
 
 
 def _write(stream: TextIO | None, text: str) -> None:
@@ -44,7 +53,9 @@ def _guarded(stream: TextIO | None, text: str) -> None:
     try:
         stream.write(text)
         stream.flush()
-    except (OSError, ValueError):
+    except (OSError, ValueError) as error:
+        if stream is sys.stdout and isinstance(error, OSError) and error.errno in FULL:
+            _lost.append(os.strerror(error.errno))
         _silence(stream)
 
 

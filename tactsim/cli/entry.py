@@ -89,6 +89,15 @@ def _path(text: str) -> Path:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs the command line and returns its exit code; ``arguments`` default to those of the process."""
+    code = _exit_code(arguments)
+    if lost := console.flush():
+        console.error(f"cannot write all of the answer to standard output: {lost}; send it to another place")
+        code = code or StorageError.exit_code
+    return code
+
+
+def _exit_code(arguments: Sequence[str] | None) -> int:
+    """The exit code of a command line, every error told."""
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")  # numpy's threads and MKL's spin on the same cores
     debug = False
     try:
@@ -127,8 +136,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return StorageError.exit_code
     except Exception as error:  # noqa: BLE001  the last resort: a defect of tactsim is reported as such
         return _defect(error, debug)
-    finally:
-        console.flush()
 
 
 def _parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.Namespace:

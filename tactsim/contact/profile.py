@@ -68,4 +68,6 @@ def check_fillet(fillet: float, largest: float) -> None:
     """
     if fillet > largest:
         given, limit = format_quantity(fillet, "m"), format_quantity(largest, "m")
-        raise ValueError(f"fillet {given} is too large: at most half the width and half the height of the section, {limit}")
+        raise ValueError(
+            f"fillet: {given} is too large; allowed: at most half the width and half the height of the section, {limit}"
+        )

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from functools import cache
 
 import numba
 from threadpoolctl import ThreadpoolController
 
 import tactsim.fem.compiling  # noqa: F401  follows numba's compiling from the first loop on
+from tactsim.errors import InputError
 
 SERIAL_ELEMENTS = 15_000
 """Element loops over fewer elements use one thread: with two, each of the dozen barriers of a loop may wait for the system."""
@@ -31,13 +32,38 @@ def are_serial(elements: int) -> bool:
 
 @contextmanager
 def loop_threads(elements: int) -> Iterator[None]:
-    """The element loops inside use one thread if there are few elements."""
+    """The element loops inside use one thread if there are few elements.
+
+    Raises
+    ------
+    InputError
+        In a process that was forked from one whose loops have run with the threads of OpenMP, which end such a process.
+    """
+    if _cut_off:
+        raise InputError(
+            "this process was forked from one that has computed, and its threads did not come along; start processes with "
+            "multiprocessing.get_context('spawn')"
+        )
     before = numba.get_num_threads()
     numba.set_num_threads(1 if are_serial(elements) else before)
     try:
         yield
     finally:
         numba.set_num_threads(before)
+
+
+_cut_off: list[int] = []
+"""Number of this process if it was forked from one whose loops had run with the threads of OpenMP."""
+
+
+def _after_a_fork() -> None:
+    with suppress(ValueError):  # no loop has run yet
+        if numba.threading_layer() == "omp":
+            _cut_off[:] = [os.getpid()]
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_after_a_fork)
 
 
 def wait_without_spinning() -> None:

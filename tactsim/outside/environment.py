@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping
 from pathlib import Path
 
-from tactsim.errors import InputError
+from tactsim.errors import InputError, StorageError
 from tactsim.outside.text import one_line
 
 THREADS = ("OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS", "OMP_NUM_THREADS", "NUMBA_NUM_THREADS", "VECLIB_MAXIMUM_THREADS")
@@ -21,13 +21,20 @@ STEERING = ".numba_config.yaml"
 
 
 def check_environment(variables: Mapping[str, str], folder: Path) -> None:
-    """Refuses numbers of threads with which numerical libraries crash, and a working folder whose files would steer them.
+    """Refuses numbers of threads with which numerical libraries crash, and a working folder that is gone or whose files would
+    steer them.
 
     Raises
     ------
     InputError
         Naming the variable or the file, and what is allowed.
+    StorageError
+        If the working folder was removed.
     """
+    try:
+        os.getcwd()
+    except OSError:
+        raise StorageError("the working folder is gone; change to another folder") from None
     if os.path.lexists(folder / STEERING):
         raise InputError(
             f"the working folder holds {STEERING}, which would decide what code the compiler runs; "

@@ -101,10 +101,18 @@ def read_manifest(folder: Path) -> Manifest | None:
         return None
     try:
         return Manifest.model_validate(json.loads(opened(place, "description").text()))
-    except (ValueError, RecursionError, ValidationError) as error:
+    except (ValueError, RecursionError) as error:
         if isinstance(error, StorageError):
             raise
-        raise StorageError(f"{one_line(place)} is damaged: {one_line(error, 200)}") from None
+        raise StorageError(f"{one_line(place)} is damaged: {_fault(error)}") from None
+
+
+def _fault(error: Exception) -> str:
+    """What is wrong with a manifest, the first place only."""
+    if not isinstance(error, ValidationError):
+        return one_line(error, 200)
+    first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+    return one_line(f"{'.'.join(map(str, first['loc']))}: {first['msg']}", 200)
 
 
 def names_in(folder: Path) -> set[str]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 import os
 import shutil
 import signal
@@ -11,9 +10,9 @@ import sys
 import time
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
-from campaign.random_cases import random_case
+from campaign.contradictions import contradictions
+from campaign.random_cases import Case, random_case
 from tactsim.case.writing import yaml_text
 from tactsim.code_identity import code_identity
 
@@ -23,10 +22,6 @@ REASONS = {"took longer than": "stopped by time", "the threshold was not reached
 CODES = {0: "converged", 2: "refused", 3: "failed with reason"}
 PATIENCE = 30.0
 """Seconds beyond its own limit after which a run counts as hung."""
-BALANCE = 1e-6
-"""Largest difference of a sum of forces from its parts over the larger: round-off of a hundred thousand terms."""
-LEAST_VOLUME = 0.0
-"""A volume ratio at or below it is a body turned inside out."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +55,9 @@ class Running:
         self.trial, self.place = trial, folder / f"{trial.kind}_{trial.number}"
         shutil.rmtree(self.place, ignore_errors=True)
         self.place.mkdir(parents=True)
-        case = self.place / "case.yaml"
-        case.write_text(yaml_text(random_case(trial.kind, trial.seed, trial.number)), encoding="utf-8")
+        case, document = self.place / "case.yaml", random_case(trial.kind, trial.seed, trial.number)
+        case.write_text(yaml_text(document), encoding="utf-8")
+        self._experiment: Case = document["experiment"]
         self._begun = time.monotonic()
         self._child = os.fork()
         if not self._child:
@@ -74,7 +70,7 @@ class Running:
         if not child and seconds <= limit:
             return None
         if child:
-            outcome, reason = judged(os.waitstatus_to_exitcode(status), self.place)
+            outcome, reason = judged(os.waitstatus_to_exitcode(status), self.place, self._experiment)
         else:
             used = self.kill()
             outcome, reason = "hung", f"no end after {limit:g} s"
@@ -114,8 +110,8 @@ def _command(case: str, seconds: float, place: Path) -> None:
         os._exit(code)
 
 
-def judged(code: int, place: Path) -> tuple[str, str]:
-    """The outcome and its reason; wrong is what contradicts itself, however it ended."""
+def judged(code: int, place: Path, experiment: Case | None = None) -> tuple[str, str]:
+    """The outcome and its reason; wrong is what contradicts itself or the ``experiment`` of its case, however it ended."""
     words = (place / "stderr").read_text(encoding="utf-8", errors="replace").strip()
     if code not in CODES:
         return "wrong", f"exit code {code}: {words[-300:]}"
@@ -130,26 +126,7 @@ def judged(code: int, place: Path) -> tuple[str, str]:
     if (result["status"] == "converged") != (code == 0):
         return "wrong", f"exit code {code} with the status {result['status']}"
     if code == 0:
-        faults = contradictions({name: quantity["value"] for name, quantity in result["quantities"].items()})
+        faults = contradictions(result, experiment)
         return ("wrong", "; ".join(faults)) if faults else ("converged", result["reason"])
     named = (outcome for beginning, outcome in REASONS.items() if result["reason"].startswith(beginning))
     return next(named, CODES[code]), result["reason"]
-
-
-def contradictions(quantities: dict[str, Any]) -> list[str]:
-    """What a converged result must not say: values that are not finite, forces out of balance, volumes turned inside out."""
-    faults = [
-        f"{name} is not finite" for name, value in quantities.items() if isinstance(value, float) and not math.isfinite(value)
-    ]
-    if "taxel_force_upper" in quantities and "reaction_force" in quantities:
-        taxels = sum(sum(row) for row in quantities["taxel_force_upper"])
-        parts = taxels + quantities["gap_force_upper"] + quantities["outside_force_upper"]
-        whole = quantities["reaction_force"]
-        if abs(parts - whole) > BALANCE * max(abs(parts), abs(whole)):
-            faults.append(f"taxels, gaps and outside of the upper jaw are {parts:g} N, the reaction {whole:g} N")
-    if quantities.get("min_volume_ratio", 1.0) <= LEAST_VOLUME:
-        faults.append(f"a volume ratio of {quantities['min_volume_ratio']:g}")
-    threshold = quantities.get("threshold_force")
-    if isinstance(threshold, float) and threshold <= 0:
-        faults.append("a threshold force that pulls")
-    return faults

@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import tactsim as ts
 from tactsim.case import load_case
 from tactsim.contact.traction import ContactState, ContactTraction
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
@@ -195,3 +196,12 @@ def test_grasps_that_crept_end(name: str, settings: tuple[str, ...], monkeypatch
         assert result.status is Status.FAILED
         assert re.search("gave up at|has kept .* of its volume, and no step leads on", result.reason)
         assert result.steps[-1].values["displacement"] > 0.5e-3
+
+
+def test_a_first_step_longer_than_the_way_leaves_shorter_ones():
+    specimen = ts.Specimen(material="icf_stable", thickness="4 mm", radius="8 mm")
+    press = ts.Indentation(specimen=specimen, recess="0.8 mm", displacement="0.3 mm", stop="displacement", steps={"first": "1 m"})
+    control = press.control()
+    assert control.first == control.largest == press.displacement
+    assert control.smallest < 1e-3 * press.displacement
+    assert press.run().status == "converged"

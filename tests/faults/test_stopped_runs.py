@@ -9,6 +9,7 @@ import json
 import os
 import signal
 import subprocess
+import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -17,6 +18,7 @@ import pytest
 from fork_server import forked_pretended_command
 from pretence import CASE_TEXT
 
+import tactsim
 from tactsim.results import read_result
 
 Start = Callable[..., subprocess.Popen[str]]
@@ -158,3 +160,31 @@ def test_a_closed_terminal_does_not_lose_the_result(start: Start, tmp_path: Path
 )
 def test_the_table_of_exit_codes(tmp_path: Path, arguments: list[str], code: int) -> None:
     assert completed(tmp_path, *arguments).returncode == code
+
+
+def test_an_answer_lost_on_a_full_disk_is_told() -> None:
+    with open("/dev/full", "w", encoding="utf-8") as full:
+        told = subprocess.run(
+            [sys.executable, "-P", "-m", "tactsim", "list", "kinds"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+        )
+    assert told.stderr.startswith("error: cannot write all of the answer to standard output: No space left on device")
+    assert told.returncode == 5
+
+
+@pytest.mark.parametrize("safe", [True, False])
+def test_a_working_folder_that_is_gone_is_told(tmp_path: Path, safe: bool) -> None:
+    gone = tmp_path / "gone"
+    gone.mkdir()
+    command = [sys.executable, *(["-P"] if safe else []), "-m", "tactsim", "list", "kinds"]
+    environment = {**os.environ, "PYTHONPATH": str(Path(tactsim.__file__).parents[1])}
+    told = subprocess.run(
+        ["sh", "-c", 'rmdir "$PWD"; exec "$@"', "sh", *command],
+        cwd=gone,
+        env=environment,
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert told.stderr.splitlines()[-1] == "error: the working folder is gone; change to another folder"
+    assert "Traceback" not in told.stderr
+    assert told.returncode == 5

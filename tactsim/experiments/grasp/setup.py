@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Self
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import Field, model_validator
@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
-from tactsim.errors import InvalidQuantity
+from tactsim.errors import InvalidQuantity, Refused
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.interfaces import Inclusion, Material
@@ -91,8 +91,8 @@ class JawSettings(FrozenModel):
         width, depth = (
             given or OVERHANG * size[axis] + 2 * abs(self.offset[axis]) for axis, given in enumerate((self.width, self.depth))
         )
-        posed = {"tilt_x": self.tilt_x, "tilt_y": self.tilt_y, "fillet": self.fillet}
-        return Jaw.model_validate({"width": width, "depth": depth, "side": side, **posed})
+        posed: dict[str, Any] = {"side": side, "tilt_x": self.tilt_x, "tilt_y": self.tilt_y, "fillet": self.fillet}
+        return Jaw(width=width, depth=depth, **posed)
 
     def middle(self, size: Sequence[float]) -> Array:
         """Place (2,) in m of the middle of its face on a block of this size, whose corner is the origin."""
@@ -188,6 +188,15 @@ class GraspSetup(FrozenModel):
         return mesh.chosen(self.block.size, self.shapes, self.flats) if isinstance(mesh, AutomaticSource) else mesh
 
     @model_validator(mode="after")
+    def _jaws_as_they_are_built(self) -> Self:
+        for side in JAWS:
+            try:
+                self.jaw(side)
+            except Refused as error:
+                raise ValueError(f"{side}.{str(error).removeprefix('Jaw: ')}") from None
+        return self
+
+    @model_validator(mode="after")
     def _embedded(self) -> Self:
         size = np.array(self.block.size)
         try:
@@ -212,7 +221,7 @@ class GraspSetup(FrozenModel):
                 most = (self.block.size[axis] + extent) / 2 - jaw.fillet
                 if abs(settings.offset[axis]) >= most:
                     given, allowed = (format_quantity(v, "m") for v in (settings.offset[axis], most))
-                    raise ValueError(f"{side}.offset {given}: the jaw passes beside the block; allowed: less than {allowed}")
+                    raise ValueError(f"{side}.offset: at {given} the jaw passes beside the block; allowed: less than {allowed}")
                 needed = self.matrix.extent()[axis]
                 if needed > extent * (1 + 1e-12):
                     wide, has = format_quantity(needed, "m"), format_quantity(extent, "m")

@@ -117,7 +117,7 @@ class DisplacedSetup(IndentationSetup):
 
     def control(self) -> StepControl:
         """Lengths of the load steps in m."""
-        first = self.steps.first or FIRST_STEP * self.contact_radius
+        first = min(self.steps.first or FIRST_STEP * self.contact_radius, self.displacement)  # what follows is a part of it
         largest = self.steps.largest or LARGEST_STEP * self.contact_radius
         smallest = self.steps.smallest or SMALLEST_STEP * first
         control = StepControl(first=first, largest=max(largest, first), smallest=smallest, unit="m")

@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import json
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from campaign.contradictions import contradictions
 from campaign.random_cases import all_kinds, random_case
 from campaign.record import as_line, first_runs, last_runs, read_record
 from campaign.report import page
-from campaign.trials import PATIENCE, Ended, Trial, contradictions, judged, tried
+from campaign.trials import PATIENCE, Ended, Trial, judged, tried
 
 from tactsim.case import load_case
 from tactsim.case.writing import yaml_text
+from tactsim.results import document, writing
+from tactsim.results.result import Result
 
 GOOD = {"status": "converged", "reason": "done", "quantities": {"force": {"value": 1.0}}}
 
@@ -60,11 +64,80 @@ def test_what_contradicts_itself_is_wrong(tmp_path: Path, code: int, result: dic
     assert judged(code, place(tmp_path, result, words))[0] == outcome
 
 
-def test_forces_that_do_not_add_up_are_wrong() -> None:
-    forces = {"taxel_force_upper": [[1.0, 2.0]], "gap_force_upper": 0.5, "outside_force_upper": 0.25, "reaction_force": 3.75}
-    assert contradictions(forces) == []
-    (fault,) = contradictions(forces | {"reaction_force": 3.76})
-    assert "taxels, gaps and outside of the upper jaw are 3.75 N, the reaction 3.76 N" in fault
+QUANTITIES = {
+    "displacement": 1e-3,
+    "reaction_force": 3.75,
+    "jaw_force_upper": [0.1, 0.0, 3.75],
+    "taxel_force_upper": [[1.0, 2.0]],
+    "gap_force_upper": 0.5,
+    "outside_force_upper": 0.25,
+    "jaw_force_lower": [-0.1, 0.0, -3.75],
+    "taxel_force_lower": [[2.0, 1.0]],
+    "gap_force_lower": 0.5,
+    "outside_force_lower": 0.25,
+    "base_force": 3.75,
+    "min_volume_ratio": 0.9,
+    "max_penetration": 1e-6,
+    "penetration_force_error": 1e-3,
+}
+"""Of a grasp, and what an indentation has beside it."""
+GRASP = {"kind": "grasp", "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": "1 mm"}]}}
+
+
+def found(changes: dict, steps: list[dict] = (), reason: str = "done", experiment: dict | None = None) -> list[str]:
+    quantities = {name: {"value": value} for name, value in {**QUANTITIES, **changes}.items()}
+    return contradictions({"quantities": quantities, "steps": steps, "reason": reason}, experiment)
+
+
+@pytest.mark.parametrize(
+    ("changes", "fault"),
+    [
+        (
+            {"reaction_force": 3.76, "base_force": 3.76},
+            "taxels, gaps and outside of the upper jaw are 3.75 N, the reaction 3.76 N",
+        ),
+        ({"gap_force_lower": 0.4}, "taxels, gaps and outside of the lower jaw are 3.65 N, the force on that jaw 3.75 N"),
+        ({"jaw_force_upper": [0.2, 0.0, 3.75]}, "the upper jaw presses along x with 0.2 N, the lower one against it with 0.1 N"),
+        ({"base_force": 3.7}, "the body presses with 3.75 N, the base against it with 3.7 N"),
+        ({"outside_force_upper": None}, "outside_force_upper: not finite"),
+        ({"taxel_force_upper": [[1.0, None]]}, "taxel_force_upper 1 2: not finite"),
+        ({"min_volume_ratio": -0.1}, "a volume ratio of -0.1"),
+        ({"max_penetration": 1e-4}, "a penetration of 0.0001 m at a displacement of 0.001 m"),
+        ({"penetration_force_error": 0.02}, "penetration takes away 2.00% of the force"),
+        ({"displacement": 0.9e-3}, "a displacement of 0.0009 m where the case asks for 0.001 m"),
+        ({"threshold_force": -1.0}, "a threshold force that pulls"),
+    ],
+)
+def test_a_wrong_number_of_a_converged_result_is_seen(changes: dict, fault: str) -> None:
+    assert found({}, experiment=GRASP) == []
+    assert found(changes, experiment=GRASP) == [fault]
+
+
+def test_a_number_of_a_step_that_is_not_finite_is_seen() -> None:
+    steps = [{"step": 1, "values": {"gap_force_upper": 1.0}}, {"step": 2, "values": {"gap_force_upper": None}}]
+    assert found({}, steps) == ["step 2 gap_force_upper: not finite"]
+
+
+def test_an_indentation_that_ends_before_its_displacement_is_seen_and_one_at_its_threshold_is_none() -> None:
+    asked = {"kind": "indentation", "displacement": "2 mm"}
+    assert found({}, reason="displacement reached", experiment=asked) == [
+        "a displacement of 0.001 m where the case asks for 0.002 m"
+    ]
+    assert found({}, reason="threshold reached", experiment=asked) == []
+
+
+def test_a_solver_that_writes_no_number_is_called_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    text = document.document_text
+
+    def broken(result: Result, case_id: str) -> str:
+        name, quantity = next(iter(result.quantities.items()))
+        lost = replace(quantity, value=float("nan"))
+        return text(replace(result, quantities={**result.quantities, name: lost}), case_id)
+
+    monkeypatch.setattr(writing, "document_text", broken)
+    outcome = tried(Trial("film_test", 1, 0, 60.0), tmp_path)
+    assert outcome.outcome == "wrong"
+    assert outcome.reason.endswith("not finite")
 
 
 def test_a_trial_runs_the_command_and_keeps_its_case(tmp_path: Path) -> None:

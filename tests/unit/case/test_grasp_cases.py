@@ -116,3 +116,34 @@ def test_what_a_whole_grasp_refuses_is_told_with_the_line_of_the_key(tmp_path, o
     with pytest.raises(CaseError) as refused:
         load_case(file)
     assert str(refused.value).startswith(f"{file}{place}")
+
+
+NEW_GRASP = """\
+schema: tactsim/case/1
+title: A grasp
+experiment:
+  kind: grasp
+  block: {tissue: icf_stable, size: [30 mm, 24 mm, 12 mm]}
+  loading: {pieces: [{kind: ramp, to: 1 mm, duration: 1 s}], control: displacement}
+  lower: {width: 25 mm, fillet: 1 mm, offset: [0 mm, 0 mm]}
+"""
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "message"),
+    [
+        (", control: displacement", "", "6: experiment.loading.control: missing; choices: displacement, force"),
+        (
+            "control: displacement",
+            "control: forces",
+            r"6: .*control: unknown control 'forces' \(did you mean 'force'\?\); choices: ",
+        ),
+        ("width: 25 mm", "width: 10 um", "7: experiment.lower.fillet: 1 mm is too large; allowed: .*, 5 µm"),
+        ("[0 mm, 0 mm]", "[40 mm, 0 mm]", "7: experiment.lower.offset: at 40 mm the jaw passes beside the block; allowed: less"),
+    ],
+)
+def test_a_refused_grasp_names_the_key_and_what_is_allowed(tmp_path, old, new, message):
+    path = tmp_path / "grasp.yaml"
+    path.write_text(NEW_GRASP.replace(old, new), encoding="utf-8")
+    with pytest.raises(CaseError, match=f"grasp.yaml:{message}"):
+        load_case(path)

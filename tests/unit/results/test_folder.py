@@ -11,6 +11,7 @@ import pytest
 
 from tactsim.errors import StorageError
 from tactsim.results.folder import claimed
+from tactsim.storage.own_files import read_manifest
 
 
 def publish(path: Path, mark: str = "new", *, replace: bool = False, keep: bool = False) -> Path | None:
@@ -176,3 +177,12 @@ def test_the_current_folder_is_refused_like_any_other(tmp_path: Path, monkeypatc
     monkeypatch.chdir(tmp_path)
     with pytest.raises(StorageError, match="did not write"):
         publish(Path("."), replace=True)
+
+
+def test_a_manifest_of_another_form_is_told_by_its_place(tmp_path):
+    (tmp_path / "manifest.json").write_text('{"files": {"a.csv": 3}}', encoding="utf-8")
+    with pytest.raises(StorageError) as told:
+        read_manifest(tmp_path)
+    assert str(told.value).endswith(
+        "manifest.json is damaged: files.a.csv: Input should be a valid dictionary or instance of WrittenFile"
+    )

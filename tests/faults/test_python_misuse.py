@@ -1,0 +1,67 @@
+"""What Python users hand in or do by mistake: numbers beyond all floats, names that are no names, pools forked too late."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+import tactsim as ts
+from tactsim.errors import StorageError
+
+FORKED = """
+import multiprocessing
+import tactsim as ts
+
+def computed(displacement):
+    specimen = ts.Specimen(material="icf_stable", thickness="4 mm", radius="8 mm")
+    press = ts.Indentation(
+        specimen=specimen, recess="0.8 mm", displacement=displacement, stop="displacement", mesh={"finest": "0.5 mm"}
+    )
+    return str(press.run().status)
+
+if __name__ == "__main__":
+    print(computed("20 um"))
+    with multiprocessing.get_context("fork").Pool(1) as pool:
+        try:
+            pool.map(computed, ["20 um"])
+        except ts.InputError as error:
+            print(error)
+"""
+
+
+@pytest.mark.parametrize("number", [10**400, -(10**400)])
+def test_a_whole_number_beyond_all_floats_is_refused(number: int) -> None:
+    with pytest.raises(ts.InputError, match=r"radius: -?10+\.\.\.0+ is not finite; expected a quantity"):
+        ts.Sphere(center=("20 mm", "20 mm", "12 mm"), radius=number)
+
+
+@pytest.mark.parametrize("name", ["x" * 5000, "x" * 300, "\N{MATHEMATICAL BOLD SMALL A}" * 64])
+def test_a_name_longer_than_any_file_name_cannot_be_read(name: str) -> None:
+    with pytest.raises(StorageError, match=r"^cannot read the case file .*File name too long"):
+        ts.load_case(name)
+
+
+def test_a_key_that_is_no_text_is_an_unknown_key() -> None:
+    with pytest.raises(ts.InputError, match=r"override 1: unknown key; allowed: schema, title, experiment, output"):
+        ts.load_case("annulus_icf", {1: 2})
+
+
+def test_a_pool_that_is_forked_after_a_computation_is_told_and_does_not_wait_for_ever(tmp_path: Path) -> None:
+    script = tmp_path / "script.py"
+    script.write_text(FORKED, encoding="utf-8")
+    root = str(Path(ts.__file__).parents[1])
+    environment = {**os.environ, "PYTHONPATH": root, "NUMBA_THREADING_LAYER": "omp"}
+    done = subprocess.run(
+        [sys.executable, str(script)], env=environment, capture_output=True, text=True, timeout=120, check=False
+    )
+    if "No threading layer could be loaded" in done.stderr:
+        pytest.skip("numba has no OpenMP here")
+    assert done.stdout.splitlines() == [
+        "converged",
+        "this process was forked from one that has computed, and its threads did not come along; start processes with "
+        "multiprocessing.get_context('spawn')",
+    ]
