@@ -179,7 +179,10 @@ def _reader(unit: str, usual: str) -> Callable[[Any, ValidationInfo], float]:
         if info.context and info.context.get("units") == "required":
             units = " or ".join(f"'{value:g} {one}'" for one in dict.fromkeys((usual, unit)))
             raise InvalidQuantity(f"{shown(value)} has no unit; expected text such as {units}")
-        return float(value) if abs(value) < 2**1024 or isinstance(value, float) else math.inf  # no float holds it
+        try:
+            return float(value)
+        except OverflowError:  # a whole number beyond all floats
+            return math.inf
 
     return read
 

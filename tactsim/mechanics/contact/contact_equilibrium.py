@@ -242,12 +242,11 @@ def _solved(
 
     load_control, rigid_displacement = action.load_control, 0.0
     begun = warm_started() if from_guess else list(contacts)
-    rounds = HELD_ROUNDS if any(contact.pair.has_friction for contact in contacts) else 0
-    for held_round in range(rounds + 1):
+    for held_round in range(HELD_ROUNDS + 1):
         try:
             return solve(begun)
         except ConvergenceError as stalled:
-            if held_round == rounds or not stalled.history or stalled.history[-1] > STALLED:
+            if held_round == HELD_ROUNDS or not stalled.history or stalled.history[-1] > STALLED:
                 raise
         moves = point_displacements(problem.body, guess, contacts, load_control, rigid_displacement)
         between = solve([held(contact, move) for contact, move in zip(contacts, moves, strict=True)])

@@ -257,7 +257,7 @@ def test_smooth_intervals_are_the_union_of_all_breakpoints():
         ({"loading": pressed({"kind": "hold", "duration": 1.0})}, "nothing happens"),
         ({"loading": pressed({"kind": "jump", "to": 0.0, "duration": 1.0}, control="force")}, "must press all the time"),
         ({"upper": {"width": 30e-3, "offset": (0.0, 60e-3)}}, None),
-        ({"upper": {"width": 30e-3, "depth": 30e-3, "offset": (0.0, 34e-3)}}, "upper.offset 34 mm: the jaw passes beside"),
+        ({"upper": {"width": 30e-3, "depth": 30e-3, "offset": (0.0, 34e-3)}}, "upper.offset: at 34 mm the jaw passes beside"),
         ({"lower": {"depth": 20e-3}}, "matrix: 29 mm wide, more than lower.depth 20 mm"),
         ({"inclusions": [{"shape": BALL, "material": "lumps"}]}, "did you mean 'lump'"),
         ({"inclusions": [{"shape": TUBE, "material": "lump", "lumen": PULSE | {"systole": 0.0}}]}, "greater than 0"),
