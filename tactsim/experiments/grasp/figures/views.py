@@ -31,6 +31,8 @@ JAW = 1.2
 """Thickness in mm with which a jaw is drawn."""
 ROOM = 1.0
 """Around the drawing in mm."""
+MOST_INTERVALS = 5
+"""Between the ticks of an axis or of the colours."""
 REGION_DASHES: Any = (0, (1.5, 1.5))
 """Of the line around where an estimated centre may lie."""
 INK, GREY = "#30363d", "#57606a"
@@ -128,6 +130,7 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     axis.set(
         xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm", ylabel=f"{'xyz'[view.vertical]} in mm (undeformed)"
     )
+    axis.locator_params(nbins=MOST_INTERVALS)
     axis.set_title(view.what, loc="left")
     despined(axis)
     _draw_scales(axis, view, grasp, norm)
@@ -142,7 +145,7 @@ def _draw_scales(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize) ->
     )
     (force, force_unit), (pressure, pressure_unit) = view.force_scale, view.pressure_scale(grasp)
     apart = "\n" if below else "  "
-    bar.locator = MaxNLocator(nbins=6)
+    bar.locator = MaxNLocator(nbins=MOST_INTERVALS)
     bar.formatter = FuncFormatter(lambda value, _: f"{value:g}{apart}({float(f'{value * pressure / force:.2g}'):g})")
     bar.update_ticks()
     bar.set_label(f"{grasp.meaning} in {force_unit} (mean pressure in {pressure_unit})")
