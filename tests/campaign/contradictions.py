@@ -61,7 +61,8 @@ def _out_of_balance(values: dict[str, Any]) -> Iterator[str]:
         for axis, (upper, lower) in enumerate(zip(values["jaw_force_upper"], values["jaw_force_lower"], strict=True)):
             pairs.append((f"the upper jaw presses along {'xyz'[axis]} with", upper, "the lower one against it with", -lower))
     if "base_force" in values:
-        pairs.append(("the body presses with", values["reaction_force"], "the base against it with", values["base_force"]))
+        pressed = values["reaction_force"] + values.get("sensor_force", 0.0)  # of an annulus, whose inner sensor presses too
+        pairs.append(("the body presses with", pressed, "the base against it with", values["base_force"]))
     largest = max([abs(force) for _, *forces in pairs for force in (forces[0], forces[2])], default=0.0)
     for what, one, than, other in pairs:
         if abs(one - other) > BALANCE * largest:

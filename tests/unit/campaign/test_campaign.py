@@ -113,6 +113,11 @@ def test_a_wrong_number_of_a_converged_result_is_seen(changes: dict, fault: str)
     assert found(changes, experiment=GRASP) == [fault]
 
 
+def test_the_base_carries_what_the_inner_sensor_presses_too() -> None:
+    assert found({"sensor_force": 0.25, "base_force": 4.0}) == []
+    assert found({"sensor_force": 0.25}) == ["the body presses with 4 N, the base against it with 3.75 N"]
+
+
 def test_a_number_of_a_step_that_is_not_finite_is_seen() -> None:
     steps = [{"step": 1, "values": {"gap_force_upper": 1.0}}, {"step": 2, "values": {"gap_force_upper": None}}]
     assert found({}, steps) == ["step 2 gap_force_upper: not finite"]
