@@ -29,8 +29,9 @@ At least {wanted:.0%} of the sensible cases shall be answered, none may hang, an
 too. *Refused* cases, such as lumps too near to a face, are no sensible ones and are left out of the share. *Wrong* is a result
 that contradicts itself: an internal error, values that are not finite, forces that do not add up, tissue turned inside out.
 The cases of seed 28 were run before null in place of a number, the lower jaw, the base, penetration and displacements cut
-short were looked at. *Hung* is what does not end {patience:g} s after its time limit. *Stopped by time* depends on the machine and on
-what else it does: the limit is by the clock, and the seconds of the processor stand beside it. In brackets the 95 % interval by Wilson.
+short were looked at. *Hung* is what does not end {patience:g} s after its time limit. *Stopped by time* depends on the machine
+and on what else it does: the limit is by the clock, and the seconds of the processor stand beside it. In brackets the 95 %
+interval by Wilson.
 """
 
 
