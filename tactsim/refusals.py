@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core.core_schema import ErrorType
 
 from tactsim.errors import Refused, shown, suggestion
+from tactsim.outside.text import one_line
 from tactsim.units import DECIMAL_POINT, format_quantity
 
 Path = tuple[str | int, ...]
@@ -28,6 +29,8 @@ _TYPES = {
 _BOUNDS = {"gt": "greater than", "ge": "at least", "lt": "less than", "le": "at most", "multiple_of": "a multiple of"}
 _PYDANTIC_TYPES = frozenset(get_args(ErrorType))
 _MISSING = object()
+LONGEST_PLACE = 200
+"""Characters of a place that `first_fault` shows."""
 OF_KEY = "[key]"
 """What the validator appends to the location of a key that it refuses."""
 
@@ -45,6 +48,12 @@ def refusals_of(error: ValidationError, value: Any, model: type[BaseModel]) -> d
         if message not in of_place:
             of_place.append(message)
     return {path: "; or ".join(of_place) for path, of_place in messages.items()}
+
+
+def first_fault(error: ValidationError) -> str:
+    """The first place that a model refused and why, on one line: of a file that no user writes, where one tells enough."""
+    first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+    return f"{one_line('.'.join(map(str, first['loc'])), LONGEST_PLACE)}: {one_line(first['msg'])}"
 
 
 @cache

@@ -9,7 +9,7 @@ from tactsim.interfaces import RigidBody
 SAMPLES = 400
 """Points at which distances are compared: two shapes that agree at so many are one."""
 SAME_PLACE = 1e-6
-"""Difference of two distances over the size looked at that counts as none."""
+"""Difference of two distances over the size looked at that counts as none: far below any element."""
 
 
 def body_mirrors(body: RigidBody, axis: int, size: float) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import cache
@@ -39,7 +40,7 @@ def loop_threads(elements: int) -> Iterator[None]:
     InputError
         In a process that was forked from one whose loops have run with the threads of OpenMP, which end such a process.
     """
-    if _cut_off:
+    if _cut_off.is_set():
         raise InputError(
             "this process was forked from one that has computed, and its threads did not come along; start processes with "
             "multiprocessing.get_context('spawn')"
@@ -52,14 +53,14 @@ def loop_threads(elements: int) -> Iterator[None]:
         numba.set_num_threads(before)
 
 
-_cut_off: list[int] = []
-"""Number of this process if it was forked from one whose loops had run with the threads of OpenMP."""
+_cut_off = threading.Event()
+"""Set in a process that was forked from one whose loops had run with the threads of OpenMP."""
 
 
 def _after_a_fork() -> None:
     with suppress(ValueError):  # no loop has run yet
         if numba.threading_layer() == "omp":
-            _cut_off[:] = [os.getpid()]
+            _cut_off.set()
 
 
 if hasattr(os, "register_at_fork"):

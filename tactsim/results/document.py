@@ -12,6 +12,7 @@ from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, Valid
 from tactsim.errors import StorageError, shown
 from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
+from tactsim.refusals import first_fault
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, StepRecord
 from tactsim.results.scene import EARLIER, UnreadableScene, read_scene, written_scene
@@ -169,9 +170,7 @@ def parse_document(text: str, name: str) -> ResultDocument:
     try:
         return ResultDocument.model_validate(content)
     except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False, include_input=False)[0]
-        fault = f"{one_line('.'.join(map(str, first['loc'])), LONGEST_NAME)}: {one_line(first['msg'])}"
-        raise StorageError(f"{one_line(name)} is damaged: {fault}") from None
+        raise StorageError(f"{one_line(name)} is damaged: {first_fault(error)}") from None
 
 
 def result_of(document: ResultDocument) -> Result:

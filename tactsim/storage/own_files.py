@@ -20,6 +20,7 @@ from tactsim.errors import StorageError
 from tactsim.outside.files import opened
 from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
+from tactsim.refusals import first_fault
 from tactsim.storage.files import naming, replace_file
 
 MANIFEST, OWN_LIST = "manifest.json", ".tactsim.json"
@@ -101,18 +102,12 @@ def read_manifest(folder: Path) -> Manifest | None:
         return None
     try:
         return Manifest.model_validate(json.loads(opened(place, "description").text()))
+    except ValidationError as error:
+        raise StorageError(f"{one_line(place)} is damaged: {first_fault(error)}") from None
     except (ValueError, RecursionError) as error:
         if isinstance(error, StorageError):
             raise
-        raise StorageError(f"{one_line(place)} is damaged: {_fault(error)}") from None
-
-
-def _fault(error: Exception) -> str:
-    """What is wrong with a manifest, the first place only."""
-    if not isinstance(error, ValidationError):
-        return one_line(error, 200)
-    first = error.errors(include_url=False, include_context=False, include_input=False)[0]
-    return one_line(f"{'.'.join(map(str, first['loc']))}: {first['msg']}", 200)
+        raise StorageError(f"{one_line(place)} is damaged: {one_line(error, 200)}") from None
 
 
 def names_in(folder: Path) -> set[str]:

@@ -7,14 +7,10 @@ from collections.abc import Mapping
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.contact.mirrored import SAME_PLACE, SAMPLES
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import Embedded, GraspSetup
 from tactsim.materials.mirrored import law_mirrors
-
-SAMPLES = 400
-"""Points in the block at which distances from surfaces are compared: two shapes that agree at so many are one."""
-SAME_PLACE = 1e-6
-"""Difference of two distances over the block's longest side that counts as none: far below any element."""
 
 
 def mirror_axes(grasp: GraspSetup) -> tuple[int, ...]:

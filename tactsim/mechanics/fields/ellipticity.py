@@ -14,8 +14,9 @@ def elliptic_in(body: Body, kinematics: Kinematics) -> Array:
     """Whether the material is strongly elliptic at each point (E, Q)."""
     elliptic = np.ones(kinematics.J.shape, bool)
     for index, material in enumerate(body.materials):
-        mine = np.broadcast_to((body.regions == index)[:, None], elliptic.shape)
+        mine = np.broadcast_to((body.regions == index)[:, None], elliptic.shape).copy()
         if isinstance(material, Hyperelastic):  # most points need no stretches, which take ten times as long
-            mine = mine & ~((kinematics.J > 0) & convex_in_invariants(material, kinematics.I1, kinematics.I2))
+            convex = convex_in_invariants(material, kinematics.I1[mine], kinematics.I2[mine])
+            mine[mine] = ~((kinematics.J[mine] > 0) & convex)
         elliptic[mine] = strongly_elliptic(material, kinematics.F[:, :, mine])
     return elliptic
