@@ -17,7 +17,7 @@ from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError, OutOfMemory
-from tactsim.fem.threads import SERIAL_UNKNOWNS, wait_without_spinning
+from tactsim.fem.threads import SERIAL_UNKNOWNS
 
 GENERAL, SYMMETRIC_INDEFINITE = 11, -2
 """Pardiso's kinds of matrices."""
@@ -270,7 +270,6 @@ def _pardiso_binding(kind: int) -> Any:
         If pypardiso is there, but not the library that it binds.
     """
     _tell_where_mkl_is()
-    wait_without_spinning()
     os.environ.setdefault("MKL_CBWR", "AUTO,STRICT")  # else a sum depends on where its numbers lie in memory, anew in each run
     try:
         import pypardiso  # makes a solver of its own, so that it raises too
