@@ -169,6 +169,10 @@ SIDES: Mapping[str, Mapping[str, tuple[float, ...]]] = {
 """Unit vector from the tissue to a body that comes from a side, by the dimension."""
 
 
+class Motion(Condition, Displacement):
+    """A displacement of a rigid body with its own course in time."""
+
+
 class ContactCondition(FaceCondition, Displacement):
     """A rigid body that touches a face; it begins at first touch, and moves by the displacement whose components are given."""
 
@@ -180,8 +184,11 @@ class ContactCondition(FaceCondition, Displacement):
     """Side from which it comes."""
     at: tuple[Length, ...] | None = None
     """Where its axis meets the body, in undeformed coordinates; by default the origin."""
+    motions: tuple[Motion, ...] = ()
+    """Further displacements that are added to it, such as one that slides after the body was pressed."""
 
     @property
-    def moves(self) -> bool:
-        """Whether it is given any displacement."""
-        return any(component is not None for component in (self.x, self.y, self.z, self.r))
+    def moving(self) -> tuple[ContactCondition | Motion, ...]:
+        """Every displacement that it is given, its own first; none of a body that stands still."""
+        given = any(component is not None for component in (self.x, self.y, self.z, self.r))
+        return (*((self,) if given else ()), *self.motions)

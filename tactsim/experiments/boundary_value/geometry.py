@@ -1,4 +1,4 @@
-"""Bodies of a simple shape, divided into cells: blocks, cylinders and tubes, balls and hollow spheres."""
+"""Bodies of a simple shape, divided into cells: blocks, plates with a hole, cylinders and tubes, balls and hollow spheres."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tactsim.mesh.affordable import PER_TETRAHEDRON, check_unknowns
 from tactsim.mesh.graded.mapped import Domain, grid_domain, polar, quarter_disc, spaced
 from tactsim.mesh.revolved import SweepSymmetry, swept
 from tactsim.model import FrozenModel
-from tactsim.units import Length, NonNegative, Positive
+from tactsim.units import Length, NonNegative, Positive, format_quantity
 
 Dimension = Literal["3d", "plane_strain", "axisymmetric"]
 AXES: dict[str, tuple[str, ...]] = {"3d": ("x", "y", "z"), "plane_strain": ("x", "y"), "axisymmetric": ("r", "z")}
@@ -137,6 +137,62 @@ class QuadrilateralGeometry(Geometry):
         return square.mapped(place)
 
 
+class PlateGeometry(Geometry):
+    """A quarter of a rectangular plate with an elliptic hole in its middle, the origin; faces hole, right and a far one in y.
+
+    The far face in y is top in plane strain and back in 3D, where bottom and top are those of the thickness, along z from 0. The
+    faces x_plane (x = 0) and y_plane (y = 0) are planes of symmetry.
+    """
+
+    kind: Literal["plate_with_hole"] = "plate_with_hole"
+    size: Corner
+    """From the middle to the far faces, along x and y: half the width and half the height."""
+    hole: tuple[Positive[Length], Positive[Length]]
+    """Semi-axes of the hole along x and y, equal of a round one."""
+    outward: Count
+    """Number of cells from the hole to the far faces."""
+    ratio: Annotated[float, Field(ge=1e-6, le=1e6)] = 1.0
+    """Length of the last of them over that of the first; they grow evenly."""
+    around: Count = 8
+    """Number of cells around the hole, up to each of the two far faces."""
+    z: Spans | None = None
+    """Cells through the thickness, in 3D only."""
+
+    def domain(self, dimension: Dimension) -> Domain:
+        """Cells between the hole and the far faces, along straight lines from angle to angle.
+
+        Raises
+        ------
+        ValueError
+            If it has none in this dimension, lacks the cells that it needs there, or the hole reaches the far faces.
+        """
+        if dimension == "axisymmetric":
+            raise ValueError("a plate with a hole has no axis; allowed dimensions: 3d, plane_strain")
+        if (self.z is None) != (dimension == "plane_strain"):
+            raise ValueError("geometry.z belongs to a plate in 3d, which needs it, and to none in plane_strain")
+        for name, semi_axis, end in zip("xy", self.hole, self.size, strict=True):
+            if semi_axis >= end:
+                given, most = format_quantity(semi_axis, "m"), format_quantity(end, "m")
+                raise ValueError(f"the hole reaches {given} along {name}; allowed: less than the size there, {most}")
+        lines = [spaced(1.0, self.outward, self.ratio), np.linspace(0.0, 2.0, 2 * self.around + 1)]
+        names = [("hole", "far"), ("y_plane", "x_plane")]
+        if self.z is not None:
+            lines, names = [*lines, line_of(self.z)], [*names, ("bottom", "top")]
+        grid = grid_domain(lines, names, {"x_plane": 0, "y_plane": 1})
+        faces = dict(grid.faces)
+        far = faces.pop("far")
+        below = (grid.mesh.nodes[far][..., 1] <= 1.0).all(axis=1)
+        faces |= {"right": far[below], "back" if self.z else "top": far[~below]}
+        return Domain(grid.mesh, faces, grid.mirrors).mapped(self._place)
+
+    def _place(self, nodes: Array) -> Array:
+        """Places (n, d) in m of nodes of the grid: from 0 at the hole to 1 outside, from 0 at y = 0 over 1 at the corner to 2."""
+        out, around = nodes[:, :1], nodes[:, 1]
+        hole = polar(np.column_stack([np.ones(len(nodes)), around * np.pi / 4])) * self.hole
+        far = np.column_stack([np.minimum(1.0, 2.0 - around), np.minimum(1.0, around)]) * self.size
+        return np.column_stack([(1 - out) * hole + out * far, nodes[:, 2:]])
+
+
 class RoundGeometry(Geometry):
     """A body with round faces: in 3D swept about z, or the part of it between planes of symmetry."""
 
@@ -232,4 +288,6 @@ class BallGeometry(RoundGeometry):
         return section if dimension == "axisymmetric" else self._revolved(section)
 
 
-AnyGeometry = Annotated[BlockGeometry | QuadrilateralGeometry | CylinderGeometry | BallGeometry, Field(discriminator="kind")]
+AnyGeometry = Annotated[
+    BlockGeometry | QuadrilateralGeometry | PlateGeometry | CylinderGeometry | BallGeometry, Field(discriminator="kind")
+]

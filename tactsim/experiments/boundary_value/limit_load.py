@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from tactsim.mechanics.models.loaded_body import LoadedBody
@@ -25,19 +23,16 @@ class LimitLoad:
     def saw(self, state: TimedState) -> None:
         """Take in the next accepted state; only steps in which nothing but loads changes count."""
         before, self._before = self._before, state
-        now, then = self._model.conditions.split(state.loads), self._model.conditions.split(before.loads)
-        led = not np.array_equal(self._model.conditions.motions.values(now[0]), self._model.conditions.motions.values(then[0]))
+        conditions = self._model.conditions
+        now, then = conditions.split(state.loads), conditions.split(before.loads)
+        led = not np.array_equal(conditions.motions.values(now[0]), conditions.motions.values(then[0]))
+        pushed = not np.array_equal(conditions.places(state.loads), conditions.places(before.loads))
         grown = float(np.abs(np.subtract(now[1], then[1])).max(initial=0.0))
-        if grown == 0 or led or self._bodies_move(now[2], then[2]):
+        if grown == 0 or led or pushed:
             return
         u, _ = self._model.space.split(state.contact.unknowns - before.contact.unknowns)
         self._last = float(np.abs(u).max()) / grown
         self._least = min(self._least, self._last)
-
-    def _bodies_move(self, now: Sequence[float], then: Sequence[float]) -> bool:
-        """Whether any rigid body moves between two sets of its factors."""
-        together = zip(self._model.conditions.contacts, now, then, strict=True)
-        return any(contact.displacement.any() and a != b for contact, a, b in together)
 
     def in_words(self) -> str:
         """That the path seems to have ended there, and what to do; empty if it does not."""

@@ -10,10 +10,9 @@ import numpy as np
 from tactsim.contact.penalty import Augmentation, Regularisation
 from tactsim.contact.traction import ContactPair
 from tactsim.experiments.boundary_value.conditions import (
+    Condition,
     ContactCondition,
-    FaceCondition,
     ForceCondition,
-    PointCondition,
     PressureCondition,
     TractionCondition,
 )
@@ -55,9 +54,9 @@ class PosedProblem:
     contacts: tuple[ContactCondition, ...]
 
     @property
-    def followed(self) -> tuple[FaceCondition | PointCondition | None, ...]:
+    def followed(self) -> tuple[Condition | None, ...]:
         """The condition that each factor of the model belongs to, None if nothing moves it."""
-        return (*(one.condition for one in self.held), *self.loads, *self.contacts)
+        return (*(one.condition for one in self.held), *self.loads, *(one for contact in self.contacts for one in contact.moving))
 
 
 def posed(problem: BoundaryValueSetup) -> PosedProblem:
@@ -124,10 +123,11 @@ class _Posing:
         touch = touch_of(self._parts, condition)
         pair = ContactPair(touch.body, condition.law)
         contact = PosedContact.apart(self._surface(touch.points), touch.reference, pair, touch.place)
-        displacement = np.zeros(self._dim)
-        for number, value in (condition.along(self._parts.axes) if condition.moves else {}).items():
-            displacement[number] = value
-        return MovedContact(contact, displacement)
+        displacements = np.zeros((len(condition.moving), self._dim))
+        for displacement, motion in zip(displacements, condition.moving, strict=True):
+            for axis, value in motion.along(self._parts.axes).items():
+                displacement[axis] = value
+        return MovedContact(contact, displacements)
 
     def _surface(self, points: SurfacePoints) -> SurfaceAssembly:
         return SurfaceAssembly(points, self._body.pattern, self._dim)

@@ -16,6 +16,7 @@ from tactsim.experiments.boundary_value.conditions import (
     Amplitude,
     AnyCondition,
     Components,
+    Condition,
     ContactCondition,
     RotationCondition,
 )
@@ -81,15 +82,20 @@ class BoundaryValueSetup(FrozenModel):
     """Largest penetration of a rigid body; by default a millionth of the body's size, with friction a hundred-thousandth."""
 
     @property
+    def _followed(self) -> list[Condition]:
+        """All that may follow an amplitude of its own."""
+        return [*self.conditions, *self.contacts, *(motion for contact in self.contacts for motion in contact.motions)]
+
+    @property
     def duration(self) -> float:
         """Time in s until the last amplitude ends."""
-        given = [one.amplitude for one in (*self.conditions, *self.contacts) if one.amplitude is not None]
+        given = [one.amplitude for one in self._followed if one.amplitude is not None]
         return max(amplitude.duration for amplitude in (self.amplitude, *given))
 
     @property
     def begins_with_jump(self) -> bool:
         """Whether anything acts at once."""
-        amplitudes = (one.amplitude or self.amplitude for one in (*self.conditions, *self.contacts))
+        amplitudes = (one.amplitude or self.amplitude for one in self._followed)
         return any(amplitude.history().segments[0].at(0.0) != 0 for amplitude in amplitudes)
 
     def largest_penetration(self, size: float) -> float:
@@ -108,8 +114,7 @@ class BoundaryValueSetup(FrozenModel):
             if isinstance(condition, Components):
                 _blaming(f"conditions.{number}: ", condition.along, axes)
         for number, contact in enumerate(self.contacts):
-            if contact.moves:
-                _blaming(f"contacts.{number}: ", contact.along, axes)
+            self._check_motions(f"contacts.{number}", contact, axes)
             _blaming(f"contacts.{number}.", self._check_contact, contact, axes)
         for name, one in self.asked.items():
             if name in RECORDED:
@@ -198,8 +203,17 @@ class BoundaryValueSetup(FrozenModel):
         if time == 0 and not self.begins_with_jump:
             raise ValueError(f"asked.{name}: nothing acts at the time 0, for no amplitude begins with a jump; take a later time")
 
+    def _check_motions(self, key: str, contact: ContactCondition, axes: tuple[str, ...]) -> None:
+        """Check the displacements that the rigid body of a contact is given."""
+        own = len(contact.moving) - len(contact.motions)
+        for number, motion in enumerate(contact.moving):
+            place = key if number < own else f"{key}.motions.{number - own}"
+            _blaming(f"{place}: ", motion.along, axes)
+            if self.dimension == "axisymmetric" and motion.r:
+                raise ValueError(f"{place}.r: a rigid body moves along the axis only in axisymmetric, not away from it")
+
     def _check_contact(self, condition: ContactCondition, axes: tuple[str, ...]) -> None:
-        """Check body, side, place and displacement of a contact; errors begin with its key."""
+        """Check body, side and place of a contact; errors begin with its key."""
         if len(axes) not in condition.body.dimensions:
             raise ValueError(f"body: a {condition.body.kind} is not defined in {self.dimension}")
         if condition.side not in SIDES[self.dimension]:
@@ -211,8 +225,6 @@ class BoundaryValueSetup(FrozenModel):
         if condition.at is not None and self.dimension == "axisymmetric" and condition.at[0] != 0:
             radius = format_quantity(condition.at[0], "m")
             raise ValueError(f"at: the axis of a rigid body is that of the body, r = 0, and not {radius} away in axisymmetric")
-        if self.dimension == "axisymmetric" and condition.r:
-            raise ValueError("r: a rigid body moves along the axis only in axisymmetric, not away from it")
 
 
 def _check_touch(parts: Parts, contact: ContactCondition) -> None:

@@ -42,15 +42,19 @@ class FactoredForce(Protocol):
 
 @dataclass(frozen=True)
 class MovedContact:
-    """A contact that begins as ``posed``; its rigid body moves by ``displacement`` (d,) in m times its factor."""
+    """A contact that begins as ``posed``; its rigid body moves by ``displacements`` (k, d) in m, each times its factor."""
 
     posed: PosedContact
-    displacement: Array
+    displacements: Array
+
+    def place(self, factors: Sequence[float]) -> Array:
+        """Place (d,) in m of the rigid body at its k factors."""
+        return self.posed.place + np.asarray(factors) @ self.displacements
 
 
 @dataclass(frozen=True)
 class Conditions:
-    """What acts on a body; the factors of the motions come first, then those of the loads and those of the contacts.
+    """What acts on a body; the factors of the motions come first, then those of the loads, then those of each contact in turn.
 
     ``unit_loads`` are loads with the size that each has at the factor one, which `FactoredForce.at` takes.
     """
@@ -64,18 +68,27 @@ class Conditions:
     @property
     def count(self) -> int:
         """Number of factors."""
-        return self.motion_count + len(self.loads) + len(self.contacts)
+        return self.motion_count + len(self.loads) + sum(len(contact.displacements) for contact in self.contacts)
 
     @property
     def only_contacts_act(self) -> bool:
         """Whether all that deforms the body are rigid bodies, each of which moves."""
         still = not self.loads and not self.motions.values([1.0] * self.motion_count).any()
-        return still and bool(self.contacts) and all(contact.displacement.any() for contact in self.contacts)
+        return still and bool(self.contacts) and all(contact.displacements.any() for contact in self.contacts)
 
-    def split(self, factors: Sequence[float]) -> tuple[Sequence[float], Sequence[float], Sequence[float]]:
-        """The factors of motions, of loads and of contacts."""
+    def split(self, factors: Sequence[float]) -> tuple[Sequence[float], Sequence[float]]:
+        """The factors of motions and of loads."""
         first, second = self.motion_count, self.motion_count + len(self.loads)
-        return factors[:first], factors[first:second], factors[second:]
+        return factors[:first], factors[first:second]
+
+    def places(self, factors: Sequence[float]) -> list[Array]:
+        """Place (d,) in m of every rigid body at all the factors."""
+        places, first = [], self.motion_count + len(self.loads)
+        for contact in self.contacts:
+            last = first + len(contact.displacements)
+            places.append(contact.place(factors[first:last]))
+            first = last
+        return places
 
 
 class LoadedBody:
@@ -121,7 +134,7 @@ class LoadedBody:
         ConvergenceError
             If there is none that Newton finds.
         """
-        motions, forces, moves = self.conditions.split(loads)
+        motions, forces = self.conditions.split(loads)
         acting = [*self._springs, *self._forces(forces)]
         unknowns = self._lifted(now, guess[:-1], self.conditions.motions.values(motions), acting, relaxation)
         if not now.contacts:
@@ -129,10 +142,8 @@ class LoadedBody:
             return ContactEquilibrium(
                 now.load, reached.unknowns, reached.iterations, reached.history[-1], (), now.regularisation, reached.kinematics
             )
-        steps = [
-            one.posed.place + factor * one.displacement - contact.place
-            for one, factor, contact in zip(self.conditions.contacts, moves, now.contacts, strict=True)
-        ]
+        places = self.conditions.places(loads)
+        steps = [place - contact.place for place, contact in zip(places, now.contacts, strict=True)]
         distance = max(float(np.linalg.norm(step)) for step in steps)
         directions = [step / distance if distance > 0 else step for step in steps]
         return guaranteed_equilibrium(

@@ -175,6 +175,32 @@ def test_a_sphere_rubs_deep_into_a_bonded_layer():
     assert 1.2 * smooth < rough < force({"kind": "stick"}) * (1 + 1e-3)
 
 
+def test_a_body_that_presses_and_then_slides_is_a_base_that_moves_below_it():
+    pressed = {"pieces": [{"kind": "ramp", "to": 1.0, "duration": 1.0}, {"kind": "hold", "duration": 3.0}]}
+    there = {"kind": "ramp", "to": 1.0, "duration": 1.0}
+    slid = {"pieces": [{"kind": "hold", "duration": 1.0}, there, {"kind": "ramp", "to": -1.0, "duration": 2.0}]}
+    block = {"kind": "block", "x": [{"length": SIDE, "cells": 6}], "y": [{"length": SIDE / 2, "cells": 3}]}
+    question = {
+        f"{axis}_{time}": {"kind": "contact_force", "component": axis, "time": float(time)} for axis in "xy" for time in (1, 2, 4)
+    }
+
+    def forces(*, base: float, motions: list[dict[str, object]]) -> dict[str, float]:
+        bottom = {"kind": "displacement", "face": "bottom", "x": base, "y": 0.0, "amplitude": slid}
+        ball = {"face": "top", "side": "top", "at": (SIDE / 2, 0.0), "body": {"kind": "sphere", "radius": 2 * SIDE}}
+        pressing = {"law": {"kind": "coulomb", "friction": 0.3}, "y": -0.02 * SIDE, "amplitude": pressed, "motions": motions}
+        shape = {"dimension": "plane_strain", "geometry": block, "steps": 6}
+        quantities = result_of(**shape, conditions=[bottom], contacts=[ball | pressing], asked=question).quantities
+        return {name: quantities[name].value for name in question}
+
+    ball_slides = forces(base=0.0, motions=[{"x": 0.1 * SIDE, "amplitude": slid}])
+    base_slides = forces(base=-0.1 * SIDE, motions=[])
+    slack = 1e-4 * abs(base_slides["y_1"])  # the penetration allowed, over that of the ball
+    assert ball_slides == pytest.approx(base_slides, abs=slack)
+    assert abs(ball_slides["x_1"]) < slack
+    assert ball_slides["x_2"] == pytest.approx(-ball_slides["x_4"], abs=slack)  # it slips there and back
+    assert ball_slides["x_2"] > 0.2 * abs(ball_slides["y_2"])
+
+
 def test_faces_that_meet_at_once_may_slip_and_stick():
     sides = [{"kind": "displacement", "face": "left", "x": 0.0}, {"kind": "displacement", "face": "bottom", "y": 0.0}]
 

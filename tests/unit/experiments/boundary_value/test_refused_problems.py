@@ -14,6 +14,7 @@ pytestmark = pytest.mark.usefixtures("one_thread")
 
 
 BALL = {"kind": "ball", "radial": CELLS}
+PLATE = {"kind": "plate_with_hole", "size": [SIDE, SIDE], "hole": [SIDE / 3, SIDE / 2], "outward": 2, "around": 2}
 HALF = {"x": [0.0, SIDE / 2]}
 
 
@@ -65,6 +66,12 @@ HALF = {"x": [0.0, SIDE / 2]}
             "the key 'c3' is not allowed; expected c and two digits",
         ),
         ({"dimension": "axisymmetric", "asked": asked("volume")}, "geometry", "a block has no axis"),
+        ({"geometry": PLATE, "asked": asked("volume")}, "geometry", "geometry.z belongs to a plate in 3d"),
+        (
+            {"geometry": PLATE | {"hole": [SIDE, SIDE / 2]}, "dimension": "plane_strain", "asked": asked("volume")},
+            "geometry",
+            "the hole reaches 10 mm along x; allowed: less than the size there, 10 mm",
+        ),
         ({"contacts": [{"face": "roof", "side": "top", "body": {"kind": "plane"}}]}, "contacts.0.face", "no face 'roof'"),
         (
             {"asked": asked("stress", at=TOP, component="rz")},
@@ -99,7 +106,14 @@ def test_what_the_body_has_not_is_refused_with_its_key(fields, place, words):
 
 
 @pytest.mark.parametrize(
-    ("moved", "words"), [({"at": [2e-3, SIDE]}, "r = 0, and not 2 mm away"), ({"r": 1e-3}, "along the axis only")]
+    ("moved", "words"),
+    [
+        ({"at": [2e-3, SIDE]}, "r = 0, and not 2 mm away"),
+        ({"r": 1e-3}, "contacts.0.r: a rigid body moves along the axis only"),
+        ({"motions": [{"z": -1e-3}, {"r": 1e-3}]}, "contacts.0.motions.1.r: a rigid body moves along the axis only"),
+        ({"z": -1e-3, "motions": [{}]}, "contacts.0.motions.0: no component is given; allowed: r, z"),
+        ({"motions": [{"x": 1e-3}]}, "contacts.0.motions.0: there is no component x; allowed: r, z"),
+    ],
 )
 def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
     sphere = {"face": "top", "side": "top", "body": {"kind": "sphere", "radius": 3e-3}} | moved
