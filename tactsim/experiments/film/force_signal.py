@@ -125,8 +125,9 @@ class Pieces(FrozenModel):
         return self.loading.duration
 
     def sampled(self, time: Array) -> Array:
-        """Force in N at times in s."""
-        return np.asarray(self.loading.history().value(np.asarray(time)))
+        """Force in N at times in s, within the bounds of the pieces: round-off takes none below zero."""
+        least, most = self.loading.least_and_most()
+        return np.clip(self.loading.history().value(np.asarray(time)), min(least, 0.0), most)
 
 
 class Record(FrozenModel):

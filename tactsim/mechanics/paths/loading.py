@@ -6,6 +6,7 @@ import functools
 import itertools
 import math
 import operator
+from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, ValidationError, create_model, model_validator
@@ -36,7 +37,15 @@ def check_periods(frequency: float, duration: float) -> None:
         )
 
 
-class Hold(FrozenModel):
+class Piece(FrozenModel):
+    """A part of a history."""
+
+    def last(self, segment: Segment) -> float:
+        """The value at its end, where its last ``segment`` is up to round-off."""
+        return segment.at(segment.end)
+
+
+class Hold(Piece):
     """The present value, held."""
 
     kind: Literal["hold"] = "hold"
@@ -48,7 +57,7 @@ class Hold(FrozenModel):
         return (Segment(start, start + self.duration, value),)
 
 
-class Jump(FrozenModel):
+class Jump(Piece):
     """A sudden change to a value, then held."""
 
     kind: Literal["jump"]
@@ -62,7 +71,7 @@ class Jump(FrozenModel):
         return (Segment(start, start + self.duration, self.to),)
 
 
-class Ramp(FrozenModel):
+class Ramp(Piece):
     """A change at a constant rate."""
 
     kind: Literal["ramp"]
@@ -76,8 +85,12 @@ class Ramp(FrozenModel):
         slope = (self.to - value) / self.duration
         return (Segment(start, start + self.duration, value, slope),)
 
+    def last(self, segment: Segment) -> float:
+        """The value itself: a force that is taken back to zero is not below it by round-off."""
+        return self.to
 
-class Sine(FrozenModel):
+
+class Sine(Piece):
     """A sine about the present value."""
 
     kind: Literal["sine"]
@@ -99,7 +112,7 @@ class Sine(FrozenModel):
         return (Segment(start, start + self.duration, value, 0.0, (wave,)),)
 
 
-class Samples(FrozenModel):
+class Samples(Piece):
     """Measured values, linear between them; times count from the beginning of the piece."""
 
     kind: Literal["samples"]
@@ -129,6 +142,10 @@ class Samples(FrozenModel):
             for (t0, v0), (t1, v1) in itertools.pairwise(pairs)
         )
 
+    def last(self, segment: Segment) -> float:
+        """The last of the values."""
+        return self.values[-1]
+
 
 class Loading(FrozenModel):
     """Pieces one after the other, from zero at the beginning."""
@@ -148,12 +165,7 @@ class Loading(FrozenModel):
 
     def segments(self) -> tuple[Segment, ...]:
         """The pieces as smooth segments of time, without what follows the last."""
-        segments: list[Segment] = []
-        start, value = 0.0, 0.0
-        for piece in self.pieces:
-            segments += piece.segments(start, value)
-            start, value = segments[-1].end, segments[-1].at(segments[-1].end)
-        return tuple(segments)
+        return tuple(segment for segments, _ in self._course() for segment in segments)
 
     def history(self) -> History:
         """The prescribed history; its last value is held."""
@@ -161,9 +173,17 @@ class Loading(FrozenModel):
 
     def least_and_most(self) -> tuple[float, float]:
         """Bounds of the values after the beginning: those at the ends of each piece, and a sine's least and most."""
-        ends = [value for s in self.segments() for value in (s.at(s.start), s.at(s.end))]
+        ends = [value for segments, last in self._course() for value in (*(s.at(s.start) for s in segments), last)]
         waves = [s.value + sign * wave.amplitude for s in self.segments() for wave in s.harmonics for sign in (-1, 1)]
         return min([*ends[1:], *waves]), max([*ends, *waves])
+
+    def _course(self) -> Iterator[tuple[tuple[Segment, ...], float]]:
+        """The segments of each piece and the value at its end."""
+        start, value = 0.0, 0.0
+        for piece in self.pieces:
+            segments = piece.segments(start, value)
+            start, value = segments[-1].end, piece.last(segments[-1])
+            yield segments, value
 
 
 def pieces_of(quantity: Any, name: str) -> Any:

@@ -55,3 +55,20 @@ def test_impossible_pieces_are_refused(control, piece, words):
 def test_a_history_needs_a_piece():
     with pytest.raises(ValidationError, match="at least one piece"):
         read("force")
+
+
+@pytest.mark.parametrize("control", ["force", "displacement"])
+def test_what_is_taken_back_to_zero_is_zero_and_not_below_it_by_round_off(control):
+    unit = {"force": "N", "displacement": "mm"}[control]
+    back = [{"kind": "ramp", "to": f"0 {unit}", "duration": "1.3 s"}, {"kind": "hold", "duration": "2.5 s"}]
+    up = [{"kind": "ramp", "to": f"1.4 {unit}", "duration": "4.3 s"}, {"kind": "hold", "duration": "3.8 s"}]
+    loading = read(control, *up, *back)
+    assert loading.history().value(loading.duration) == 0.0
+    assert loading.least_and_most()[0] == 0.0
+    samples = {"kind": "samples", "times": ["0 s", "0.7 s", "2 s"], "values": [f"1.4 {unit}", f"0.3 {unit}", f"0 {unit}"]}
+    assert read(control, *up, samples, back[1]).least_and_most()[0] == 0.0
+
+
+def test_bounds_count_the_end_of_a_ramp_before_a_jump():
+    up, down = {"kind": "ramp", "to": "3 N", "duration": "0.3 s"}, {"kind": "jump", "to": "1 N", "duration": "1 s"}
+    assert read("force", up, down).least_and_most() == (1.0, 3.0)

@@ -153,6 +153,17 @@ def test_waves_keep_to_their_bounds():
         Chirp(kind="chirp", low=3.0)
 
 
+def test_a_sensor_that_is_let_go_is_not_pulled_by_round_off():
+    up, down = {"kind": "ramp", "to": 4.0, "duration": 0.3}, {"kind": "ramp", "to": 0.0, "duration": 0.7}
+    pieces = [up, {"kind": "hold", "duration": 2.0}, down, {"kind": "hold", "duration": 1.0}]
+    let_go = SensorResponse(
+        force={"kind": "pieces", "loading": {"control": "force", "pieces": pieces}},
+        chain=SignalChain(sampling_rate=500.0),
+    ).run(quiet)
+    assert float(let_go.history["force"].min()) == 0.0
+    assert float(let_go.history["force"].max()) == 4.0
+
+
 def test_a_record_is_read_from_a_file(tmp_path):
     path = tmp_path / "force.csv"
     path.write_text("time [s], force [mN]\n1, 0\n2, 500\n3, 0\n", encoding="utf-8")
