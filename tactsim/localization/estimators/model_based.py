@@ -69,8 +69,8 @@ class ModelBasedEstimator(Estimator):
     One ball that stands for two lies between them, where nothing is. So the evidence of one ball is held against that of two that
     do not overlap (``evidence``), with the same S, on a coarser grid. Two are the answer if they are likelier, if the readings
     rise at separate places (``separate_places``), or if the mean place lies outside its own region, as between two places where
-    one ball could be; unless they are nearer to each other in plan than the pitch of the taxels, where two may be one of another
-    shape.
+    one ball could be. Where they are nearer to each other in plan than the pitch of the taxels, two may be one of another shape:
+    the answer is one ball then, and says that two explain the readings better.
 
     Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415, for the evidence; the response is that of ``lump_response``.
     """
@@ -139,10 +139,13 @@ class ModelBasedEstimator(Estimator):
         x, y, z, radius, contrast = map(float, mean)
         region = CellRegion(readings.response.axes, cells)
         pair = self._pair(readings, fit, between=not region.contains(mean[:3]))
-        if pair is not None:
+        near = pair is not None and _apart(pair) < readings.layout.pitch
+        if pair is not None and not near:
             return replace(pair, probability=probability, factor=fit.factor)
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
         reason = f"a {'softer' if contrast < 0 else 'stiffer'} ball with a probability of {probability:.3g}"
+        if pair is not None:
+            reason += f", though {pair.reason}: nearer to each other than the taxels, they may be one of another shape"
         return Estimate(True, (ball,), reason + factor_words(fit.factor), probability, factor=fit.factor)
 
     def _pair(self, readings: Readings, fit: ReferenceFit, *, between: bool) -> Estimate | None:
@@ -170,9 +173,6 @@ class ModelBasedEstimator(Estimator):
             return None
         cell = EVERY * np.array([float(axis[1] - axis[0]) for axis in response.axes])
         bodies = likely_bodies(two, fine, cell)
-        first, other = (np.array(body.center[:2]) for body in bodies)
-        if np.linalg.norm(first - other) < readings.layout.pitch:
-            return None
         words = f"two balls explain the readings better than one, with a probability of {odds / (1 + odds):.3g}"
         if odds <= 1:
             why = (
@@ -207,6 +207,12 @@ class ModelBasedEstimator(Estimator):
         """Of anything being there; each prior of the factor is as likely as the other."""
         away = np.logaddexp.reduce([fit.nothing for fit in fits]) - np.logaddexp.reduce([fit.something for fit in fits])
         return float(1 / (1 + (1 - self.prior) / self.prior * np.exp(np.clip(away, -700, 700))))
+
+
+def _apart(pair: Estimate) -> float:
+    """Distance in plan of two bodies in m."""
+    first, other = (np.array(body.center[:2]) for body in pair.inclusions)
+    return float(np.linalg.norm(first - other))
 
 
 def _moments(samples: Array, weights: Array, spread: Array) -> tuple[Array, Array]:
