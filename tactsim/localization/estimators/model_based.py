@@ -145,7 +145,7 @@ class ModelBasedEstimator(Estimator):
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
         reason = f"a {'softer' if contrast < 0 else 'stiffer'} ball with a probability of {probability:.3g}"
         if pair is not None:
-            reason += f", though {pair.reason}: nearer to each other than the taxels, they may be one of another shape"
+            reason += f", though {pair.reason}; nearer to each other than the taxels, they may be one of another shape"
         return Estimate(True, (ball,), reason + factor_words(fit.factor), probability, factor=fit.factor)
 
     def _pair(self, readings: Readings, fit: ReferenceFit, *, between: bool) -> Estimate | None:
