@@ -7,7 +7,7 @@ from tactsim.case import load_case
 from tactsim.errors import CaseError, InvalidQuantity, StorageError
 from tactsim.experiments.film.film_creep import FilmCreep, MeasuredCreep
 from tactsim.experiments.film.film_test import FilmTest
-from tactsim.experiments.film.force_signal import Chirp, Record, Square
+from tactsim.experiments.film.force_signal import Chirp, Pieces, Record, Square
 from tactsim.experiments.film.sensor_response import SensorResponse
 from tactsim.results import Status
 from tactsim.sensors.electronics.signal_chain import SignalChain
@@ -162,6 +162,10 @@ def test_a_sensor_that_is_let_go_is_not_pulled_by_round_off():
     ).run(quiet)
     assert float(let_go.history["force"].min()) == 0.0
     assert float(let_go.history["force"].max()) == 4.0
+    held = [{"kind": "jump", "to": 9.69, "duration": 0.1}, {"kind": "hold", "duration": 4.2}]
+    pieces = [*held, {"kind": "ramp", "to": 0.0, "duration": 8.3}, {"kind": "hold", "duration": 1.0}]
+    slow = Pieces(kind="pieces", loading={"control": "force", "pieces": pieces})
+    assert slow.sampled(np.array([12.6])) == 0.0, "the ramp ends in the next floating-point number"
 
 
 def test_a_record_is_read_from_a_file(tmp_path):
