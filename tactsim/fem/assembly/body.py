@@ -59,7 +59,7 @@ class Body:
     .. math:: \\int \\tfrac12 \\kappa\\, (g(F) - p / K)^2\\, dV, \\qquad \\kappa = \\frac{a G}{1 + a G / K}
 
     in its potential, with a multiple a of the shear modulus G. That is zero in every exact solution, so that it changes no order
-    of convergence (grad-div stabilisation: Franca & Hughes 1988, doi:10.1016/0045-7825(88)90094-9; Olshanskii & Reusken 2004,
+    of convergence (grad-div stabilisation: Franca & Hughes 1988, doi:10.1016/0045-7825(88)90168-5; Olshanskii & Reusken 2004,
     doi:10.1090/S0025-5718-03-01629-6). Where a material has no compiled form, its own methods are called at the points
     (``interpreted``), several times slower.
 
