@@ -73,3 +73,16 @@ def test_a_pool_that_is_forked_after_a_computation_is_told_and_does_not_wait_for
         "this process was forked from one that has computed, and its threads did not come along; start processes with "
         "multiprocessing.get_context('spawn')",
     ]
+
+
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("annulus_convex", "experiment.specimen.surface_radius"),
+        ("grasp_two_arteries", "experiment.inclusions.0.shape.centre_line.1.1"),
+        ("published_bonded_disc", "experiment.geometry.radial.1.length"),
+    ],
+)
+def test_a_length_whose_square_is_no_number_is_refused_in_words(name: str, place: str) -> None:
+    with pytest.raises(ts.InputError, match=r"'1e300 m' is larger than anything in nature; allowed: up to 1e\+60 m$"):
+        ts.load_case(name, {place: "1e300 m"})
