@@ -190,7 +190,7 @@ class Body:
 
     def rounding_forces(self) -> Array:
         """Nodal forces (n,) in N that a stress as large as the shear modulus could make without cancellation."""
-        moduli = np.array([material.shear_modulus for material in self.materials])[self.regions]
+        moduli = np.array([_instantaneous_modulus(material) for material in self.materials])[self.regions]
         points = self.points
         size = np.abs(points.gradients).max(axis=-1) + points.hoop
         forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
@@ -237,3 +237,11 @@ class Body:
             self.compliance,
             self.volume_stiffness,
         )
+
+
+def _instantaneous_modulus(material: Material) -> float:
+    """Small-strain shear modulus of a material at once in Pa."""
+    if material.relaxation is None:
+        return material.shear_modulus
+    remaining, relaxing, _ = material.relaxation.amplitudes
+    return material.shear_modulus * (remaining + float(relaxing.sum()))
