@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import shutil
 import socket
 import subprocess
@@ -228,6 +229,7 @@ def test_no_estimate_is_past_and_a_slow_one_is_cancelled(browser: webdriver.Chro
         assert words(browser, "estimate") == ""
         assert "estimated" not in words(browser, "legend")
         until(lambda: "parts done" in words(browser, "busy-words"))
+        assert re.match(r"Computing the estimate of step 4 of 4, 1\.000 s: \d+ s so far, ", words(browser, "busy-words"))
         browser.save_screenshot(str(tmp_path / "busy.png"))
         browser.find_element(By.ID, "cancel").click()
         until(lambda: "No estimate: cancelled" in words(browser, "estimate"))

@@ -24,8 +24,8 @@ export class Answer {
     get("again").hidden = !message.cancelled;
     if (message.busy) {
       const done = message.systems ? `, ${message.systems} part${message.systems === 1 ? "" : "s"} done` : "";
-      const stage = message.stage ? `: ${message.stage}` : "";
-      get("busy-words").textContent = `Computing ${this.#moment(message)}for ${Math.round(message.seconds)} s${done}${stage}`;
+      const stage = message.stage ? `; ${message.stage}` : "", of = this.#moment(message).replace(/, $/, "");
+      get("busy-words").textContent = `Computing the estimate${of && ` of ${of}`}: ${Math.round(message.seconds)} s so far${done}${stage}`;
     }
     const lines = message.busy ? [] : [
       ...message.words.map((words) => paragraph(words, / at \(|^At \(/.test(words) ? "place" : "")),
