@@ -345,6 +345,7 @@ def test_a_localization_shows_its_estimate_first_and_draws_its_tube(browser: web
         until(lambda: "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm" in words(browser, "estimate"))
         assert "A ball and a tube" in words(browser, "estimate")
         assert "As stored: hypotheses" in words(browser, "estimators")
+        assert words(browser, "age") == "As stored: hypotheses; computed with the result, not now"
         regions = "return document.getElementById('space-canvas').dataset.regions"
         until(lambda: browser.execute_script(regions) == "3")  # of the ball, by its standard deviations, in three planes
         assert "its centre lies in here with 90 %" in words(browser, "legend")
