@@ -82,8 +82,8 @@ def _names(command: str) -> list[str]:
 
         return sorted(LIBRARY)
     places, beginning = FILES[command]
-    found = [path for path in sorted(CASES.glob(places)) if re.search(f"^{beginning}", path.read_text("utf-8"), re.MULTILINE)]
-    return [*(path.stem for path in found), *sorted({path.parent.name for path in found} - {CASES.name})]
+    files = [path for path in sorted(CASES.glob(places)) if re.search(f"^{beginning}", path.read_text("utf-8"), re.MULTILINE)]
+    return [*(path.stem for path in files), *sorted({path.parent.name for path in files} - {CASES.name})]
 
 
 def _completed(command: str) -> dict[str, Any]:

@@ -124,7 +124,12 @@ def test_the_completion_in_bash_offers_names_and_files(
 def test_the_completion_of_the_other_shells_names_the_same(shell: str, files: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["completion", shell]) == 0
     lines = capsys.readouterr().out.splitlines()
-    for name, with_files in (("annulus_convex", True), ("icf_stable", True), ("film_thermogravimetry", True), ("film_test", False)):
+    for name, with_files in (
+        ("annulus_convex", True),
+        ("icf_stable", True),
+        ("film_thermogravimetry", True),
+        ("film_test", False),
+    ):
         offering = [line for line in lines if re.search(rf"\b{name}\b", line)]
         assert offering
         assert all((files in line) == with_files for line in offering)
