@@ -49,6 +49,12 @@ def result(case: ts.Case) -> ts.Result:
 
 
 @pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps compute here: a worker takes seconds to begin, and one test has a real one."""
+    monkeypatch.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep))
+
+
+@pytest.fixture
 def grasp() -> ts.Grasp:
     return ts.Grasp(
         block=ts.Block(size=("40 mm", "40 mm", "20 mm"), tissue="icf_stable"),
@@ -265,6 +271,7 @@ def test_a_quantity_of_a_result_is_a_value_of_a_case(result: ts.Result) -> None:
         ts.Annulus(inner_radius=3 * pint.UnitRegistry().dimensionless)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_parts_that_are_built_in_python_stand_in_overrides_mappings_and_variations(tmp_path: Path) -> None:
     rubber, ball = ts.NeoHookean(c10="3 kPa"), ts.Sphere((0.02, 0.02, 0.01), "3 mm")
     case = ts.load_case("annulus_icf", {"experiment.specimen.material": rubber})
@@ -394,6 +401,7 @@ def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:
     assert not (tmp_path / "b.zarr").exists()
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_an_interrupted_sweep_says_what_is_kept_and_how_to_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """Without a word on splits that are empty because samples are left; a shorter continuation is refused with a remedy."""
     varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
@@ -408,6 +416,7 @@ def test_an_interrupted_sweep_says_what_is_kept_and_how_to_go_on(tmp_path: Path,
     assert ts.sweep(varied, samples=90, resume=True, **how).sizes["sample"] == 90
 
 
+@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize(
     ("package", "extra", "job"),
     [
