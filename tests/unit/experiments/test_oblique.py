@@ -69,7 +69,7 @@ def fibres(*direction: float) -> dict[str, Any]:
 
 def pressed(material: Any, body: dict[str, Any], kind: str = "indentation_3d", **more: Any) -> Any:
     specimen = {"material": material, "thickness": "4 mm", "radius": "6 mm"}
-    mesh = {"finest": "1.2 mm", "growth": 2, "adaptive": False}
+    mesh = {"finest": "2 mm", "growth": 2, "adaptive": False}
     stop = {"stop": "displacement", "displacement": "0.1 mm", "contact": {"kind": "coulomb", "friction": 0}}
     experiment = {"kind": kind, "specimen": specimen, "body": body, "mesh": mesh, **stop, **more}
     return load_case({"schema": "tactsim/case/1", "experiment": experiment}).experiment
