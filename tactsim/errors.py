@@ -22,6 +22,7 @@ Two outcomes of a command are no errors and have an exit code of their own: ``NO
 from __future__ import annotations
 
 import difflib
+import math
 import reprlib
 from collections.abc import Iterable
 from typing import Any, ClassVar
@@ -134,5 +135,15 @@ def shown(value: Any) -> str:
     return _SHORTENED.repr(value)
 
 
-_SHORTENED = reprlib.Repr()
+class _Shortened(reprlib.Repr):
+    """Values on a line, of which a whole number may have more digits than Python spells."""
+
+    def repr_int(self, x: int, level: int) -> str:
+        try:
+            return super().repr_int(x, level)
+        except ValueError:
+            return f"a whole number of {x.bit_length() * math.log10(2):.0f} digits"
+
+
+_SHORTENED = _Shortened()
 _SHORTENED.maxstring = _SHORTENED.maxother = _SHORTENED.maxlong = 80

@@ -5,6 +5,8 @@ from __future__ import annotations
 import inspect
 import itertools
 import keyword
+import math
+import sys
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any, get_type_hints
@@ -84,6 +86,8 @@ def plain(value: Any) -> Any:
         return value.model_dump(mode="json", by_alias=True, context={"units": "written"})
     if isinstance(value, Mapping):
         return {key: plain(item) for key, item in value.items()}
+    if isinstance(value, int) and abs(value) > sys.float_info.max:
+        return math.inf  # as in a file; JSON has no text for a number of thousands of digits
     return [plain(item) for item in value] if isinstance(value, list | tuple) else written(value)
 
 

@@ -53,7 +53,8 @@ def refusals_of(error: ValidationError, value: Any, model: type[BaseModel]) -> d
 def first_fault(error: ValidationError) -> str:
     """The first place that a model refused and why, on one line: of a file that no user writes, where one tells enough."""
     first = error.errors(include_url=False, include_context=False, include_input=False)[0]
-    return f"{one_line('.'.join(map(str, first['loc'])), LONGEST_PLACE)}: {one_line(first['msg'])}"
+    place = one_line(".".join(map(str, first["loc"])), LONGEST_PLACE)
+    return f"{place}: {one_line(first['msg'])}" if place else one_line(first["msg"])
 
 
 @cache

@@ -151,6 +151,10 @@ def format_quantity(value: float, unit: str) -> str:
     return f"{number:.5g} {compact_unit}"
 
 
+LARGEST = 1e60
+"""In SI: what is larger is a slip of the keyboard, and its fifth power no number any more."""
+
+
 def _is_pint(value: Any) -> bool:
     """Whether it is a quantity of pint, of whatever registry."""
     return "pint" in sys.modules and isinstance(value, sys.modules["pint"].Quantity)
@@ -173,16 +177,21 @@ def _reader(unit: str, usual: str) -> Callable[[Any, ValidationInfo], float]:
     def read(value: Any, info: ValidationInfo) -> float:
         value = value if isinstance(value, str | int | float) else written(value)
         if isinstance(value, str):
-            return parse_quantity(value, unit)
+            return bounded(parse_quantity(value, unit), value)
         if isinstance(value, bool) or not isinstance(value, int | float):
             raise InvalidQuantity(f"{shown(value)} is not a quantity; expected text such as '1 {usual}'")
         if info.context and info.context.get("units") == "required":
             units = " or ".join(f"'{value:g} {one}'" for one in dict.fromkeys((usual, unit)))
             raise InvalidQuantity(f"{shown(value)} has no unit; expected text such as {units}")
         try:
-            return float(value)
+            return bounded(float(value), value)
         except OverflowError:  # a whole number beyond all floats
             return math.inf
+
+    def bounded(number: float, given: Any) -> float:
+        if LARGEST < abs(number) < math.inf:
+            raise InvalidQuantity(f"{shown(given)} is larger than anything in nature; allowed: up to {LARGEST:g} {unit}")
+        return number
 
     return read
 

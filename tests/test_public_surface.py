@@ -12,10 +12,13 @@ from typing import Any, Literal
 import numpy as np
 import pint
 import pytest
+from sweeps import Inline
 
 import tactsim as ts
 from tactsim.case.writing import case_text
 from tactsim.contact.jaw import Jaw
+from tactsim.dataset import TorchSamples
+from tactsim.dataset.running.executors import LocalWorkers
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
 from tactsim.experiments.grasp.scene import ReadGrasp
 from tactsim.results import FieldFrame
@@ -43,6 +46,12 @@ def case() -> ts.Case:
 @pytest.fixture(scope="module")
 def result(case: ts.Case) -> ts.Result:
     return case.run()
+
+
+@pytest.fixture
+def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sweeps compute here: a worker takes seconds to begin, and one test has a real one."""
+    monkeypatch.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep))
 
 
 @pytest.fixture
@@ -262,6 +271,7 @@ def test_a_quantity_of_a_result_is_a_value_of_a_case(result: ts.Result) -> None:
         ts.Annulus(inner_radius=3 * pint.UnitRegistry().dimensionless)
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_parts_that_are_built_in_python_stand_in_overrides_mappings_and_variations(tmp_path: Path) -> None:
     rubber, ball = ts.NeoHookean(c10="3 kPa"), ts.Sphere((0.02, 0.02, 0.01), "3 mm")
     case = ts.load_case("annulus_icf", {"experiment.specimen.material": rubber})
@@ -389,6 +399,41 @@ def test_a_variation_becomes_a_data_set(tmp_path: Path) -> None:
             ts.ClosedForm.example().vary({"outer_radius": {"uniform": ["4 mm", "2 mm"]}}), samples=2, out=tmp_path / "c.zarr"
         )
     assert not (tmp_path / "b.zarr").exists()
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_an_interrupted_sweep_says_what_is_kept_and_how_to_go_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Without a word on splits that are empty because samples are left; a shorter continuation is refused with a remedy."""
+    varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
+    how = {"out": tmp_path / "annuli.zarr", "workers": 1, "splits": {"train": 0.5, "validation": 0.5}}
+    with monkeypatch.context() as patched:
+        patched.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep, stop_after=1))
+        with pytest.raises(KeyboardInterrupt, match=r"^\d+ of 90 samples are kept in .*annuli\.zarr; go on with resume=True$"):
+            ts.sweep(varied, samples=90, **how)
+    assert 0 < ts.load_data(how["out"]).sizes["sample"] < 90
+    with pytest.raises(StorageError, match="has 90 samples, 8 would lose some; ask for at least as many, or choose another"):
+        ts.sweep(varied, samples=8, resume=True, **how)
+    assert ts.sweep(varied, samples=90, resume=True, **how).sizes["sample"] == 90
+
+
+@pytest.mark.usefixtures("in_this_process")
+@pytest.mark.parametrize(
+    ("package", "extra", "job"),
+    [
+        ("zarr", "data", lambda place: ts.load_data(place)),
+        ("torch", "torch", lambda place: TorchSamples(place, inputs=["largest_force"])[0]),
+        ("pymoo", "identification", lambda place: ts.load_case("dma_atrial").run()),
+    ],
+)
+def test_a_missing_extra_is_named_with_what_installs_it(
+    package: str, extra: str, job: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """In a program as in the shell, also where the job imports it late."""
+    varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
+    ts.sweep(varied, samples=2, out=tmp_path / "annuli.zarr", workers=1, splits={"train": 1.0, "validation": 0.0})
+    monkeypatch.setitem(sys.modules, package, None)
+    with pytest.raises(ts.InputError, match=rf"{package}, needed for .*: pip install 'tactsim\[{extra}\]'$"):
+        job(tmp_path / "annuli.zarr")
 
 
 def test_a_sweep_refuses_what_its_workers_cannot_load_before_it_makes_a_store(tmp_path: Path) -> None:

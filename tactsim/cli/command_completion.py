@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import json
 import re
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -13,8 +14,8 @@ from tactsim.cli import console
 NAME = "completion"
 SUMMARY = "print the completion of commands, options and names for bash, zsh or fish"
 DESCRIPTION = """\
-Prints a script that teaches a shell to complete the commands and options of tactsim, the names of shipped cases
-and tables, and files.
+Prints a script that teaches a shell to complete the commands and options of tactsim, the names of shipped cases,
+materials and tables, the kinds of a new case, and files.
 
   bash   tactsim completion bash > ~/.local/share/bash-completion/completions/tactsim
   zsh    tactsim completion zsh > ~/.zfunc/_tactsim     (a folder of $fpath)
@@ -25,13 +26,15 @@ examples:
   eval "$(tactsim completion bash)"
 """
 SHELLS = ("bash", "zsh", "fish")
-NAMED = {
+FILES = {
     "run": ("*.yaml", "schema: tactsim/case/"),
     "show": ("*.yaml", "schema: tactsim/case/"),
     "sweep": ("*.yaml", "schema: tactsim/sweep/"),
     "validate": ("*/*.yaml", "rows:"),
 }
 """Command -> which of the shipped files its first argument may name: their places and how a line begins."""
+NAMED = (*FILES, "material", "new")
+"""Commands whose first argument may be a name of what ships."""
 PATHS = ("FOLDER", "RESULT", "NAME|CASE")
 """What arguments are called that take a path as text."""
 
@@ -50,7 +53,7 @@ def run(arguments: argparse.Namespace) -> int:
     for command, sub in _commands(parser):
         actions = sub._get_positional_actions()
         if command in NAMED:
-            actions.pop(0).complete = _names_and_files(command)  # type: ignore[attr-defined]
+            actions.pop(0).complete = _completed(command)  # type: ignore[attr-defined]
         for action in (*actions, *sub._get_optional_actions()):
             if action.type is Path or action.metavar in PATHS:
                 action.complete = shtab.FILE  # type: ignore[attr-defined]
@@ -67,22 +70,39 @@ def _commands(parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.A
                 yield from _commands(sub)
 
 
-def _names_and_files(command: str) -> dict[str, Any]:
-    """What shtab is to complete an argument with that is a shipped name or a file: a function or words for each shell."""
-    import shtab
-
+def _names(command: str) -> list[str]:
+    """What ships and can be the first argument of a command."""
     from tactsim.shipped import CASES
 
-    places, beginning = NAMED[command]
-    texts = ((path.stem, path.read_text(encoding="utf-8")) for path in sorted(CASES.glob(places)))
-    names = " ".join(name for name, text in texts if re.search(f"^{beginning}", text, re.MULTILINE))
-    function = f"_tactsim_{command}_names_and_files"
+    if command == "new":  # the shipped schema names the kinds; loading them all would hold up every shell that begins
+        schema = json.loads((CASES / "case.schema.json").read_text(encoding="utf-8"))
+        return list(schema["properties"]["experiment"]["discriminator"]["mapping"])
+    if command == "material":
+        from tactsim.materials.library import LIBRARY
+
+        return sorted(LIBRARY)
+    places, beginning = FILES[command]
+    files = [path for path in sorted(CASES.glob(places)) if re.search(f"^{beginning}", path.read_text("utf-8"), re.MULTILINE)]
+    return [*(path.stem for path in files), *sorted({path.parent.name for path in files} - {CASES.name})]
+
+
+def _completed(command: str) -> dict[str, Any]:
+    """What shtab is to complete the first argument of a command with: a function or words for each shell.
+
+    A shipped name or a file, but for the kind of a new case.
+    """
+    import shtab
+
+    names, function = " ".join(_names(command)), f"_tactsim_{command}_argument"
+    bash, zsh, fish = (
+        ("", "", "") if command == "new" else ('; compgen -f -- "$1"', " 'files:file:_files'", f" {shtab.FILE['fish']}")
+    )
     return {
         "bash": function,
         "zsh": function,
-        "fish": f"{names} {shtab.FILE['fish']}",
+        "fish": names + fish,
         "preamble": {
-            "bash": f'{function}() {{ compgen -W "{names}" -- "$1"; compgen -f -- "$1"; }}',
-            "zsh": f"{function}() {{ _alternative 'names:name:({names})' 'files:file:_files' }}",
+            "bash": f'{function}() {{ compgen -W "{names}" -- "$1"{bash}; }}',
+            "zsh": f"{function}() {{ _alternative 'names:name:({names})'{zsh} }}",
         },
     }

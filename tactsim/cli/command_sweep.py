@@ -140,12 +140,12 @@ def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> in
     if not arguments.quiet:
         for line in going.tally.summary():
             console.out(line)
-        splits = going.sweep.settings.splits
-        for line in empty_split_lines(empty_splits(split_counts(going.store), splits), splits):
-            console.note(line)
-        left = len(going.store.pending())
-        if left:
+        if left := len(going.store.pending()):
             console.out(f"{left} samples are left; go on with: tactsim sweep {arguments.case} --out {arguments.out} --resume")
+        else:
+            splits = going.sweep.settings.splits
+            for line in empty_split_lines(empty_splits(split_counts(going.store), splits), splits):
+                console.note(line)
         console.out(f"data set {arguments.out}; check it with: tactsim data check {arguments.out}")
     if stopped:
         return INTERRUPTED

@@ -22,7 +22,7 @@ class Annulus(Revolved):
     >>> f"{1e6 * ring.area:.1f} mm^2"
     '21.2 mm^2'
 
-    Source: thesis, Fig. 3.1 and 3.7, p. 3.1.1; the fillet is not printed and is a declared assumption.
+    Source: thesis, section 3.1.1, Fig. 3.1 and 3.7; the fillet is not printed and is a declared assumption.
     """
 
     kind: Literal["annulus"] = "annulus"

@@ -18,7 +18,7 @@ class Coulomb(ContactLaw):
     >>> float(ts.Coulomb(friction=0.6).traction_limit(1000.0))  # Pa, under a contact pressure of 1 kPa
     600.0
 
-    Source: thesis, 3.2 (0.4 between annulus and elastomer) and 6.5 (0.6 between jaws and tissue).
+    Source: thesis, 3.2 (0.4 between annulus and elastomer) and 6.6 (0.6 between jaws and tissue).
     """
 
     kind: Literal["coulomb"] = "coulomb"

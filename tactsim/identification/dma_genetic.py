@@ -11,6 +11,7 @@ from tactsim.errors import ConvergenceError, InvalidQuantity, UnknownName
 from tactsim.identification.dma_data import DmaData
 from tactsim.identification.dma_least_squares import DmaFit
 from tactsim.identification.dma_objective import FORMS, KelvinConstants, objective
+from tactsim.outside.extras import extras_named
 
 SOFTEST, STIFFEST = 1e-2, 1e4
 """Assumption: moduli from 1e-2 to 1e4 of the smallest dynamic modulus; the thesis prints no bounds."""
@@ -51,6 +52,8 @@ def fit_genetic(data: DmaData, units: int = 8, *, form: str = "squared", setting
         If the form of the objective is none of ``FORMS``.
     ConvergenceError
         If no better constants were found than the best of the first generation.
+    InputError
+        If pymoo is not installed.
 
     Source: thesis section 4.5; Deb & Agrawal 1995 (crossover and mutation); Blank & Deb 2020, doi:10.1109/ACCESS.2020.2990567.
     """
@@ -79,10 +82,11 @@ def fit_genetic(data: DmaData, units: int = 8, *, form: str = "squared", setting
 
 def _searched(data: DmaData, units: int, form: str, settings: GeneticSettings) -> tuple[Array, tuple[float, ...]]:
     """Best log constants, and the best objective of each generation."""
-    from pymoo.algorithms.soo.nonconvex.ga import GA
-    from pymoo.core.callback import Callback
-    from pymoo.core.problem import Problem
-    from pymoo.optimize import minimize
+    with extras_named():
+        from pymoo.algorithms.soo.nonconvex.ga import GA
+        from pymoo.core.callback import Callback
+        from pymoo.core.problem import Problem
+        from pymoo.optimize import minimize
 
     size = float(np.abs(data.compliance).max()) ** (2 if form == "squared" else 1)
     history: list[float] = []

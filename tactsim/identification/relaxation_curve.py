@@ -161,7 +161,7 @@ def fit_relaxation(curve: RelaxationCurve | str | Path, *, rise: float = 0.0) ->
         If the fit does not converge.
 
     Source: Boltzmann's superposition, as in Tschoegl 1989, chapter 2; the spectrum, Lawson & Hanson 1974, chapter 23, and Jakes
-    1995, doi:10.1135/cccc19951815.
+    1995, doi:10.1135/cccc19951781.
     """
     if not isinstance(curve, RelaxationCurve | str | Path):
         raise InputError(f"fit_relaxation: {shown(curve)} is not a curve; expected the path of a CSV file, or a RelaxationCurve")

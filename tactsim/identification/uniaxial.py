@@ -29,6 +29,7 @@ from tactsim.materials.mooney_rivlin_3 import MooneyRivlin3
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
 from tactsim.materials.polynomial import Polynomial
 from tactsim.materials.stability_range import SCANNED, StabilityReport, stability_range
+from tactsim.refusals import first_fault
 
 
 @dataclass(frozen=True)
@@ -228,4 +229,4 @@ def _material(form: Form, values: Array, source: str) -> InvariantPolynomial:
     try:
         return form.kind.model_validate(constants)
     except ValidationError as error:
-        raise InvalidQuantity(f"{source}: the fit is no material: {error.errors()[0]['msg']}") from None
+        raise InvalidQuantity(f"{source}: the fit is no material: {first_fault(error)}") from None

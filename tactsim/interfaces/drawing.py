@@ -1,7 +1,8 @@
-"""What draws one figure of a result."""
+"""What draws one figure of a result, and the figure within a page."""
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Callable
 from typing import Any, Protocol
 
@@ -15,3 +16,8 @@ class Drawing(Protocol):
 
     def __call__(self, form: str = "png") -> bytes:
         """It as a file of this form, ``png``, ``svg`` or ``pdf``."""
+
+
+def png_source(content: bytes) -> str:
+    """A PNG as the address of a picture that stands within its HTML page."""
+    return f"data:image/png;base64,{base64.b64encode(content).decode()}"

@@ -134,7 +134,7 @@ def read_weights(path: str | Path) -> LearnedWeights:
         if str(file["schema"]) != SCHEMA:
             raise StorageError(f"{path} has the schema {one_line(file['schema'], 40)!r}; this tactsim reads {SCHEMA!r}")
         presence, *places = (_network(file, number) for number in range(_count(file["networks"])))
-        layout = TaxelLayout.model_validate_json(str(file["layout"]))
+        layout = TaxelLayout.model_validate_json(str(file["layout"]), strict=True)
         numbers = {name: np.asarray(file[name], dtype=float) for name in NUMBERS}
         held_out = int(file["held_out"])
         weights = LearnedWeights(layout=layout, places=tuple(places), presence=presence, held_out=held_out, **numbers)

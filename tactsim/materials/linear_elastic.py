@@ -74,7 +74,7 @@ class LinearElastic(Material):
 
     @classmethod
     def example(cls) -> Self:
-        """The lump of the thesis, section 6.3: E = 18 kPa; Poisson's ratio 0.49 is an assumption."""
+        """The lump of the thesis, section 6.5: E = 18 kPa; Poisson's ratio 0.49 is an assumption."""
         return cls.model_validate({"youngs_modulus": 18e3, "poisson_ratio": 0.49})
 
 

@@ -15,7 +15,7 @@ class NeoHookean(InvariantPolynomial):
     >>> ts.NeoHookean(c10="36 kPa").shear_modulus  # Pa
     72000.0
 
-    Source: Treloar 1943, doi:10.1039/tf9433900036 (statistical theory); verification in the thesis's chapter 6 materials.
+    Source: Treloar 1943, doi:10.1039/tf9433900036 (statistical theory).
     """
 
     kind: Literal["neo_hookean"] = "neo_hookean"

@@ -23,6 +23,8 @@ SMALLEST = 0.01
 """Least diameter of an inclusion over the shortest side of the block: a smaller one is a mistaken unit."""
 SAMPLES_ACROSS = 40
 """Sample triangles along the extent of a body when its distance from another is measured."""
+FOUND = 1e-6
+"""Error of the distance between two bodies that are too near, over the extent of one."""
 
 
 def inclusion_name(number: int, inclusion: Inclusion) -> str:
@@ -91,6 +93,23 @@ def _check_apart(first: _Embedded, second: _Embedded, gap: float) -> None:
             where = "beside" if one.hollow else "outside"
             raise InvalidQuantity(f"{other.name} lies inside {one.name}; allowed: inclusions {where} each other")
         if distance.min() < gap:
-            nearest, allowed = format_quantity(float(abs(distance.min())), "m"), format_quantity(gap, "m")
-            how = f"overlap by {nearest}" if distance.min() < 0 else f"are {nearest} apart"
+            apart = _apart(one.body, other.body, other.samples[distance.argmin()])
+            nearest, allowed = format_quantity(abs(apart), "m"), format_quantity(gap, "m")
+            how = f"overlap by {nearest}" if apart < 0 else f"are {nearest} apart"
             raise InvalidQuantity(f"{one.name} and {other.name} {how}; allowed: at least {allowed} between inclusions")
+
+
+def _apart(one: Solid, other: Solid, start: Array) -> float:
+    """Distance in m between two bodies, or, below zero, how far they must move apart to touch; convex ones, others from near.
+
+    The least sum of the distances of a point (3,) from both, which is convex if the bodies are; ``start`` lies near it.
+    """
+    from scipy.optimize import minimize
+
+    extent = float(np.ptp(one.bounds(), axis=0).max())
+
+    def both(place: Array) -> float:
+        return sum(float(body.signed_distance((start + extent * place)[None])[0]) for body in (one, other)) / extent
+
+    least = minimize(both, np.zeros(3), method="Nelder-Mead", options={"xatol": FOUND, "fatol": FOUND}).fun
+    return extent * round(float(least) / FOUND) * FOUND

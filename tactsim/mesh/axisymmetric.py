@@ -17,9 +17,16 @@ SLENDER = 4.0
 """Largest ratio of width to height of a grid cell in the thinnest layer, before refinement."""
 MOST_BISECTIONS = 80
 MOST_ELEMENTS = 500_000
+LARGEST_AREA = 3**0.5 / 4
+"""Of a triangle over the square of its longest edge."""
+SURELY = 4.0
+"""Elements that coarse triangles seem to need, at their largest wanted size, over the most, from which on they are too many: that
+size may be half of what is wanted between the places looked at."""
 
 
-def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, rings: Sequence[float] = ()) -> QuadraticMesh:
+def section_mesh(
+    radius: float, interfaces: Sequence[float], size: Size, *, rings: Sequence[float] = (), keys: str = "element size"
+) -> QuadraticMesh:
     """Triangles of a cylinder's section, at most as long as ``size`` says, by bisection of a coarse grid.
 
     Parameters
@@ -28,6 +35,7 @@ def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, ring
     interfaces : heights in m of the top, of each boundary between layers and of the base; a region lies between each two
     size : wanted element size at points in m
     rings : radii in m of circles on the top that must be nodes: the refined mesh is shifted by less than an element for them
+    keys : what messages call that which the wanted size follows from
 
     Raises
     ------
@@ -50,20 +58,28 @@ def section_mesh(radius: float, interfaces: Sequence[float], size: Size, *, ring
     for _ in range(MOST_BISECTIONS):
         corners = mesh.p.T[mesh.t.T]
         edges = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2)
-        wanted = np.min([*(size(corners[:, i]) for i in range(3)), size(corners.mean(axis=1))], axis=0)
+        sizes = np.array([*(size(corners[:, i]) for i in range(3)), size(corners.mean(axis=1))])
+        wanted = sizes.min(axis=0)
         if not (wanted > 0).all():
             raise InputError("the wanted element size is not positive everywhere")
         marked = np.flatnonzero(edges.max(axis=1) > wanted)
         if not len(marked):
             break
-        if mesh.nelements > MOST_ELEMENTS:
-            raise InputError(f"the wanted element sizes need more than {MOST_ELEMENTS} elements; take larger ones")
+        needed = float((_areas(corners) / (LARGEST_AREA * sizes.max(axis=0)) / sizes.max(axis=0)).sum())
+        if mesh.nelements > MOST_ELEMENTS or needed > SURELY * MOST_ELEMENTS:
+            raise InputError(f"{keys}: more than {MOST_ELEMENTS} elements; allowed: up to that; take larger ones")
         mesh = mesh.refined(marked)
     else:
         raise InputError("the mesh does not reach the wanted element size")
     middle = mesh.p[1, mesh.t].mean(axis=0)
     regions = len(heights) - 1 - np.searchsorted(heights, middle)
     return quadratic_mesh(_with_rings(mesh.p.T, rings), mesh.t.T.astype(np.int64), regions)
+
+
+def _areas(corners: Array) -> Array:
+    """Areas (n,) in m^2 of triangles (n, 3, 2)."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    return np.abs(a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0]) / 2
 
 
 def _with_rings(points: Array, rings: Sequence[float]) -> Array:

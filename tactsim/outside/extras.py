@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+
 from tactsim.errors import InputError
 
 EXTRAS = {
@@ -26,3 +29,18 @@ def missing_extra(error: ImportError) -> InputError | None:
         return None
     what, extra = EXTRAS[package]
     return InputError(f"the package {package}, needed for {what}, is not installed: pip install 'tactsim[{extra}]'")
+
+
+@contextmanager
+def extras_named() -> Iterator[None]:
+    """A block of imports of packages that only some jobs need.
+
+    Raises
+    ------
+    InputError
+        If one of them is not installed, with the command that installs it.
+    """
+    try:
+        yield
+    except ImportError as error:
+        raise missing_extra(error) or error from None

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import base64
 import html as markup
 import io
 import textwrap
@@ -19,6 +18,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 from tactsim.interfaces import Drawing, ResultFigures
+from tactsim.interfaces.drawing import png_source
 from tactsim.outside.text import one_line
 from tactsim.results import Result, Status
 
@@ -74,8 +74,7 @@ class Figures(dict[str, Figure]):
 
 def picture(name: str, content: bytes) -> str:
     """A PNG as it stands in HTML."""
-    source = base64.b64encode(content).decode()
-    return f'<img alt="{markup.escape(name)}" style="max-width:100%" src="data:image/png;base64,{source}">'
+    return f'<img alt="{markup.escape(name)}" style="max-width:100%" src="{png_source(content)}">'
 
 
 def new_figure(width: float, height: float) -> Figure:

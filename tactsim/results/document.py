@@ -119,7 +119,7 @@ def document_text(result: Result, case_id: str) -> str:
             {"step": s.step, "newton_iterations": s.newton_iterations, "residual": s.residual, "values": s.values}
             for s in result.steps
         ],
-        "scene": None if result.scene is None else written_scene(result.scene),
+        "scene": None if result.scene is None else written_scene(result.scene, result.kind),
     }
     lost: list[str] = []
     plain = {name: plain_json(value, (name,), lost) for name, value in content.items()}
@@ -163,7 +163,7 @@ def parse_document(text: str, name: str) -> ResultDocument:
     """
     content = read_json(text, name)
     version = content.get("schema_version") if isinstance(content, dict) else None
-    if not isinstance(version, int):
+    if type(version) is not int:  # nor true, which Python takes for 1
         raise StorageError(f"{one_line(name)} is not a result of tactsim: it has no schema_version")
     if version not in (EARLIER_VERSION, SCHEMA_VERSION):
         raise StorageError(f"{one_line(name)} has schema_version {version}; this tactsim reads {SCHEMA_VERSION}, update tactsim")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -11,6 +12,7 @@ from tactsim.errors import TactsimError, shown
 from tactsim.kind import Kind
 from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
+from tactsim.refusals import first_fault
 from tactsim.registry import kind_class
 from tactsim.results.quantity import Coordinate
 
@@ -66,19 +68,20 @@ def read_scene(kind: str, described: Any) -> Scene | UnreadableScene | None:
     if described is None:
         return None
     try:
-        scene: Scene = kind_class(Scene, kind).model_validate(described)
+        model = kind_class(Scene, str(described.get("kind", kind)))
+        scene: Scene = model.model_validate_json(json.dumps(described), strict=True)
     except ValidationError as error:
         first = error.errors(include_url=False, include_input=False)[0]
-        place = ".".join(map(str, ("scene", *first["loc"])))
         if first["type"] == "union_tag_invalid":
+            place = ".".join(map(str, ("scene", *first["loc"])))
             unknown = f"{one_line(place)}: the kind {shown(first['ctx']['tag'])} is not known here"
             return UnreadableScene(unknown, "import the module that defines it first, or run the case again")
-        return UnreadableScene(f"{one_line(place)}: {one_line(first['msg'])}")
+        return UnreadableScene(f"scene.{first_fault(error)}")
     except (TactsimError, ArithmeticError) as error:
         return UnreadableScene(f"scene: {one_line(error)}")
     return scene
 
 
-def written_scene(scene: Scene) -> dict[str, Any]:
-    """The scene as plain JSON values, without its kind, which is that of the result."""
-    return scene.model_dump(mode="json", exclude={"kind"})
+def written_scene(scene: Scene, kind: str) -> dict[str, Any]:
+    """The scene as plain JSON values, without its kind if that is the result's: a user's subclass has the scene of its base."""
+    return scene.model_dump(mode="json", exclude={"kind"} if scene.kind == kind else set())

@@ -40,7 +40,7 @@ class MatrixReading:
 class MatrixReadout(ForceElectronics):
     """Sensors of one kind and their electronics; without an active area of its own, the film has that of the taxel.
 
-    Source: thesis, chapter 2 and sections 6.1 to 6.3: 3 x 3 sensors per jaw, low pass of 40 Hz.
+    Source: thesis, chapter 2 and sections 6.1 to 6.4: 3 x 3 sensors per jaw, low pass of 40 Hz.
     """
 
     scatter: ChannelScatter | None = ChannelScatter()

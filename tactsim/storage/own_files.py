@@ -12,9 +12,9 @@ import json
 import os
 import re
 from pathlib import Path
-from typing import Literal
+from typing import Annotated
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
 
 from tactsim.errors import StorageError
 from tactsim.outside.files import opened
@@ -34,7 +34,7 @@ OWN_NAME = re.compile(r"\w[\w.-]*(/\w[\w.-]*)?")
 class WrittenFile(BaseModel):
     """One file: its size in bytes and the SHA-256 of its content."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
     size: int = Field(ge=0)
     sha256: str = Field(pattern=r"[0-9a-f]{64}")
@@ -45,7 +45,7 @@ class Manifest(BaseModel):
 
     model_config = ConfigDict(frozen=True)
 
-    schema_version: Literal[1] = 1
+    schema_version: Annotated[int, Strict(), Field(ge=1, le=1)] = 1
     files: dict[str, WrittenFile]
 
     def foreign(self, folder: Path) -> list[str]:

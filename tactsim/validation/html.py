@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import base64
 import re
 from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from typing import Any
 
+from tactsim.interfaces.drawing import png_source
 from tactsim.validation.comparison import RowOutcome, TableOutcome
 from tactsim.validation.pictures import PlacedPicture, placed_pictures
 from tactsim.validation.report import (
@@ -49,7 +49,7 @@ def html_report(validations: Sequence[Validation], figures: Mapping[str, Mapping
     return template.render(
         version=__version__,
         wrong=[name for validation in validations for name in validation.wrong],
-        overview=None if overview is None else _inline(overview),
+        overview=None if overview is None else png_source(overview),
         meanings={label: MEANINGS[label] for label in CLASSES},
         colours=COLOURS,
         run_header=RUN_HEADER,
@@ -79,7 +79,7 @@ def _table(outcome: TableOutcome, figures: Mapping[str, bytes]) -> dict[str, Any
         "title": outcome.table.title,
         "source": outcome.table.source,
         "rows": [_row(row, drawn) for row in outcome.rows],
-        "pictures": {picture.name: _inline(figures[picture.name]) for picture in drawn},
+        "pictures": {picture.name: png_source(figures[picture.name]) for picture in drawn},
         "studies": [{"name": name, "runs": run_cells(runs)} for name, runs in outcome.inputs.studies.items()],
     }
 
@@ -91,7 +91,3 @@ def _row(outcome: RowOutcome, pictures: Sequence[PlacedPicture]) -> dict[str, An
     words = {"quantity": row.quantity, "place": row.place, "label": outcome.label, "why": outcome.reason}
     seen_in = [picture.name for picture in pictures if any(row.id in rows for rows in picture.rows.values())]
     return {**shown, **words, "seen_in": seen_in, "below": [picture for picture in pictures if picture.below == row.id]}
-
-
-def _inline(png: bytes) -> str:
-    return f"data:image/png;base64,{base64.b64encode(png).decode()}"

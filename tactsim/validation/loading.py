@@ -108,7 +108,7 @@ def read_model(path: Path, model: type[Model]) -> Model:
     if not isinstance(document.value, dict):
         raise CaseError(f"{path}: the file holds no mapping")
     try:
-        return model.model_validate_json(json.dumps(document.value), context={"units": "required"})
+        return model.model_validate_json(json.dumps(document.value), strict=True, context={"units": "required"})
     except ValidationError as error:
         raise case_error(problems_of(error, document, model), place_in(path, {})) from None
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from textwrap import dedent
 from types import ModuleType
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import pytest
@@ -19,6 +19,7 @@ from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import AmbiguousKind, CaseError, StorageError, UnknownName
 from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.recorder import inclusion_kinds
+from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.experiments.localization.confusion import class_of
 from tactsim.experiments.recording import RecordingSettings, recorder_for
@@ -323,6 +324,21 @@ def test_a_result_with_a_body_of_a_kind_that_is_not_loaded_says_so(added: Any, t
     result = load_result(folder)
     with pytest.raises(StorageError, match="the kind 'added' is not known here; import the module that defines it first"):
         result.scene_as(IndentationScene)
+
+
+def test_a_result_of_an_experiment_that_extends_another_is_the_same_when_it_is_loaded(tmp_path: Path) -> None:
+    class Deeper(Indentation):
+        kind: Literal["deeper"] = "deeper"
+
+    try:
+        text = (PRESS + "  mesh: {finest: 0.7 mm, growth: 1, adaptive: false}\n").replace("kind: indentation", "kind: deeper")
+        result = case(tmp_path, text, {"BODY": "punch"}).run(None)
+        again = load_result(result.save(tmp_path / "kept"))
+        assert result.kind == "deeper"
+        assert again.scene_as(IndentationScene) == result.scene_as(IndentationScene)
+        assert again == result
+    finally:
+        forget(Deeper)
 
 
 @pytest.mark.parametrize("base", POINTS, ids=lambda base: base.__name__)

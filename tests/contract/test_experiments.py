@@ -130,7 +130,7 @@ def test_the_example_runs_and_is_drawn(kind: str, tmp_path: Path, monkeypatch: p
         assert quantity.description, name
         assert quantity.unit == "1" or is_unit(quantity.unit), name
     if result.scene is not None:
-        assert read_scene(kind, json.loads(json.dumps(written_scene(result.scene)))) == result.scene
+        assert read_scene(kind, json.loads(json.dumps(written_scene(result.scene, kind)))) == result.scene
     drawings = figures_for(result)
     assert all(np.frombuffer(draw()[:8], np.uint8).tobytes() == b"\x89PNG\r\n\x1a\n" for draw in drawings.values())
     assert unmarked_figures(result) == []

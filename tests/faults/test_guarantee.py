@@ -108,6 +108,10 @@ MUTANTS = {
         lambda s: with_forces(s, tangential=lambda c: np.where(c.pressure > 0, pushed(c.tangential, c.normals, 1e3), 0.0)),
         "friction of .* on rigid body 1 where the contact law allows",
     ),
+    "friction a thousandth outside of its cone": (
+        lambda s: with_forces(s, tangential=lambda c: 0.4004 * c.pressure * np.cross(c.normals.T, [1.0, 0.0, 0.0]).T),
+        "friction of .* on rigid body 1 where the contact law allows",
+    ),
     "friction without pressure": (
         lambda s: with_forces(
             s, tangential=lambda c: np.where(c.pressure > 0, c.tangential, pushed(c.tangential, c.normals, 1.0))

@@ -48,6 +48,7 @@ BAD_DOCUMENTS: dict[str, tuple[str, str]] = {
     "a name without end": ('"time": {', f'"{"x" * 1000}": {{'),
     "steps that are no list": ('"steps": [', '"steps": 1, "other": ['),
     "a version of another kind": ('"schema_version": 2', '"schema_version": "2"'),
+    "true for a version": ('"schema_version": 2', '"schema_version": true'),
     "lists without end": ('"scene": {', '"scene": {"deep": ' + "[" * 500 + "]" * 500 + ","),
     "lists beyond recursion": ('"scene": {', '"scene": {"deep": ' + "[" * 100_000 + "]" * 100_000 + ","),
 }
@@ -56,6 +57,8 @@ THIN = {"kind": "ellipsoid", "center": [0.02, 0.02, 0.01], "semi_axes": [1e-9, 5
 BAD_SCENES: list[tuple[Path_, Any]] = [
     (("scene", "matrix"), []),
     (("scene", "matrix", "rows"), 10**9),
+    (("scene", "matrix", "pitch"), True),
+    (("scene", "block_size"), ["40 mm", True, 0.02]),
     (("scene", "matrix", "pitch"), 1e300),
     (("scene", "matrix", "size"), "9 mm"),
     (("scene", "block_size"), [1e300, 1e300, 1e300]),

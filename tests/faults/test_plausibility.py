@@ -32,6 +32,20 @@ def test_an_unusual_material_is_reported_with_both_values(coefficients, words):
 
 
 @pytest.mark.parametrize(
+    ("constants", "words"),
+    [
+        ("equilibrium", "shear modulus of 4e+12 Pa at once, by its fractions"),
+        ("instantaneous", "shear modulus of 4 \u00b5Pa in the end"),
+    ],
+)
+def test_fractions_that_leave_next_to_nothing_are_reported(constants, words):
+    memory = {"fractions": (0.5, 0.5 - 1e-9), "times": (0.1, 1.0), "constants": constants}
+    (warning,) = oddities({"tissue": NeoHookean(c10=2e3, relaxation=memory)})
+    assert words in warning
+    assert oddities({"tissue": NeoHookean(c10=2e3, relaxation=memory | {"fractions": (0.5, 0.4)})}) == []
+
+
+@pytest.mark.parametrize(
     "material", [MooneyRivlin2(c10=1000.0, c01=-300.0), Polynomial(coefficients={"c10": 1000.0, "c01": -300.0})]
 )
 def test_a_negative_second_coefficient_is_reported_where_it_loses_stability(material):

@@ -39,6 +39,14 @@ def test_a_whole_number_beyond_all_floats_is_refused(number: int) -> None:
         ts.Sphere(center=("20 mm", "20 mm", "12 mm"), radius=number)
 
 
+def test_a_whole_number_of_more_digits_than_python_spells_is_refused() -> None:
+    with pytest.raises(ts.InputError, match="radius: a whole number of 5000 digits is not finite; expected a quantity"):
+        ts.Sphere(center=("20 mm", "20 mm", "12 mm"), radius=10**5000)
+    for key in ("title", "experiment.displacement", "experiment.mesh.refinement", "experiment.contact.friction"):
+        with pytest.raises(ts.InputError, match=f"override {key}: inf "):
+            ts.load_case("annulus_icf", {key: 10**5000})
+
+
 @pytest.mark.parametrize("name", ["x" * 5000, "x" * 300, "\N{MATHEMATICAL BOLD SMALL A}" * 64])
 def test_a_name_longer_than_any_file_name_cannot_be_read(name: str) -> None:
     with pytest.raises(StorageError, match=r"^cannot read the case file .*File name too long"):
@@ -65,3 +73,16 @@ def test_a_pool_that_is_forked_after_a_computation_is_told_and_does_not_wait_for
         "this process was forked from one that has computed, and its threads did not come along; start processes with "
         "multiprocessing.get_context('spawn')",
     ]
+
+
+@pytest.mark.parametrize(
+    ("name", "place"),
+    [
+        ("annulus_convex", "experiment.specimen.surface_radius"),
+        ("grasp_two_arteries", "experiment.inclusions.0.shape.centre_line.1.1"),
+        ("published_bonded_disc", "experiment.geometry.radial.1.length"),
+    ],
+)
+def test_a_length_whose_square_is_no_number_is_refused_in_words(name: str, place: str) -> None:
+    with pytest.raises(ts.InputError, match=r"'1e300 m' is larger than anything in nature; allowed: up to 1e\+60 m$"):
+        ts.load_case(name, {place: "1e300 m"})

@@ -111,8 +111,8 @@ RAMP = "{kind: ramp, to: 1 mm, duration: 1 s}"
         ("annulus_icf", "experiment.steps={first: 10 nm, largest: 10 nm}", r"steps\.largest 10 nm asks for 8e\+05 steps"),
         (
             "grasp_plain",
-            f"experiment.loading.pieces=[{RAMP}, {{kind: sine, amplitude: 0.1 mm, frequency: 1e300 Hz, duration: 1 s}}]",
-            r"pieces\.1: frequency .* makes 1e\+300 periods; allowed: up to 10000",
+            f"experiment.loading.pieces=[{RAMP}, {{kind: sine, amplitude: 0.1 mm, frequency: 1e30 Hz, duration: 1 s}}]",
+            r"pieces\.1: frequency .* makes 1e\+30 periods; allowed: up to 10000",
         ),
         ("atrial_annulus_sine", "experiment.loading.pieces.1.frequency=1e6 Hz", r"periods; allowed: up to 10000"),
         ("grasp_artery_pulse", "experiment.inclusions.0.lumen.rate=1e300 Hz", r"rate"),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from skfem import MeshTri
 
 from tactsim.case import load_case
 from tactsim.errors import InputError
@@ -55,6 +56,24 @@ def test_sectors_of_a_fine_section_are_counted_before_they_are_swept():
     case = load_case(CASES / "annulus_icf_3d.yaml", ["experiment.mesh={finest: 10 um, growth: 0.3, sectors: 90}"])
     with pytest.raises(InputError, match=r"mesh\.sectors: about .* unknowns; allowed: up to 3e\+06"):
         case.experiment.model()
+
+
+@pytest.mark.parametrize("mesh", ["{finest: 1 nm}", "{finest: 0.1 um}", "{refinement: 1e5}"])
+def test_sections_too_fine_are_refused_before_they_are_built(mesh: str, monkeypatch: pytest.MonkeyPatch):
+    case = load_case(CASES / "annulus_icf.yaml", [f"experiment.mesh={mesh}"])
+    refined, counts = MeshTri.refined, []
+
+    def counted(self: MeshTri, *arguments: object) -> MeshTri:
+        made = refined(self, *arguments)
+        counts.append(made.nelements)
+        return made
+
+    monkeypatch.setattr(MeshTri, "refined", counted)
+    with pytest.raises(
+        InputError, match=r"^mesh\.finest, .* and mesh\.refinement: more than 500000 elements; allowed: up to that"
+    ):
+        case.experiment.model()
+    assert max(counts, default=0) < 20_000
 
 
 def test_a_section_far_wider_than_thick_is_refused():

@@ -65,13 +65,16 @@ def test_an_exponent_of_two_is_neo_hooke(verification_record):
         assert_close(other.first_piola_kirchhoff(F, pressure), known.first_piola_kirchhoff(F, pressure), SAME)
 
 
-def body_and_unknowns(measure: str, material: Material, *, relaxing: bool) -> tuple[Body, Array]:
-    """A jittered box of two materials, deformed; with ``relaxing``, in a step of time of materials that relax."""
+def body_and_unknowns(measure: str, material: Material, *, relaxing: bool, resisting: float = 0.0) -> tuple[Body, Array]:
+    """A jittered box of two materials, deformed; with ``relaxing``, in a step of time of materials that relax.
+
+    ``resisting`` is the stiffness a against what the pressures leave of the volume change.
+    """
     counts = MEASURES[measure]
     mesh = box([1.0] * len(counts), counts, jitter=0.2, seed=3)
     nodes = mesh.nodes + (np.array([0.3, 0.0]) if measure == "axisymmetric" else 0.0)
     mesh = QuadraticMesh(nodes, mesh.elements, np.arange(len(mesh.elements)) % 2)
-    body = body_of(mesh, measure, material, NeoHookean(c10=MODULUS / 4, bulk_modulus=MODULUS))
+    body = body_of(mesh, measure, material, NeoHookean(c10=MODULUS / 4, bulk_modulus=MODULUS), volume_stiffness=resisting)
     generator = np.random.default_rng(1)
     if relaxing:
         shape = body.points.weights.shape
@@ -84,10 +87,12 @@ def body_and_unknowns(measure: str, material: Material, *, relaxing: bool) -> tu
     return body, unknowns
 
 
+@pytest.mark.parametrize("resisting", [0.0, 3.0])
 @pytest.mark.parametrize("relaxing", [False, True], ids=["elastic", "relaxing"])
 @pytest.mark.parametrize("measure", MEASURES)
-def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, relaxing):
-    body, unknowns = body_and_unknowns(measure, PrincipalOgden(modulus=MODULUS, alpha=3.0, bulk_modulus=2e4), relaxing=relaxing)
+def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, relaxing, resisting):
+    material = PrincipalOgden(modulus=MODULUS, alpha=3.0, bulk_modulus=2e4)
+    body, unknowns = body_and_unknowns(measure, material, relaxing=relaxing, resisting=resisting)
     assert body.forms == (None, "invariants")
     residual, tangent = forms.residual(body, unknowns), forms.tangent(body, unknowns).toarray()
     assert_close(body.residual(unknowns), residual, 1e-12)

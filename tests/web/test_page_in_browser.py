@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import json
+import re
 import shutil
 import socket
 import subprocess
@@ -228,6 +229,7 @@ def test_no_estimate_is_past_and_a_slow_one_is_cancelled(browser: webdriver.Chro
         assert words(browser, "estimate") == ""
         assert "estimated" not in words(browser, "legend")
         until(lambda: "parts done" in words(browser, "busy-words"))
+        assert re.match(r"Computing the estimate of step 4 of 4, 1\.000 s: \d+ s so far, ", words(browser, "busy-words"))
         browser.save_screenshot(str(tmp_path / "busy.png"))
         browser.find_element(By.ID, "cancel").click()
         until(lambda: "No estimate: cancelled" in words(browser, "estimate"))
@@ -343,6 +345,7 @@ def test_a_localization_shows_its_estimate_first_and_draws_its_tube(browser: web
         until(lambda: "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm" in words(browser, "estimate"))
         assert "A ball and a tube" in words(browser, "estimate")
         assert "As stored: hypotheses" in words(browser, "estimators")
+        assert words(browser, "age") == "As stored: hypotheses; computed with the result, not now"
         regions = "return document.getElementById('space-canvas').dataset.regions"
         until(lambda: browser.execute_script(regions) == "3")  # of the ball, by its standard deviations, in three planes
         assert "its centre lies in here with 90 %" in words(browser, "legend")

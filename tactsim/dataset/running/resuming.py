@@ -106,7 +106,9 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
     _refuse_other_arrays(store, layout)
     present = store.described.get("status") or next(iter(store.described.values()), None)
     if present is not None and sweep.samples < present.shape[0]:
-        fewer = f"has {present.shape[0]} samples; --samples {sweep.samples} would lose some"
+        fewer = (
+            f"has {present.shape[0]} samples, {sweep.samples} would lose some; ask for at least as many, or choose another folder"
+        )
         raise StorageError(f"the data set {one_line(store.path)} {fewer}")
     remove_torn(store.path, {*store.described, *(variable.name for variable in layout.variables)})
     restored = restore(store, layout.variables, sweep.samples)

@@ -46,6 +46,8 @@ def sweep(
 ) -> xarray.Dataset:
     """Compute a data set from an experiment in which some places vary, and open it.
 
+    An interruption keeps the samples that are done, and ends with a KeyboardInterrupt that says how to go on.
+
     >>> import tactsim as ts
     >>> varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
     >>> parts = {"train": 0.5, "validation": 0.5}
@@ -85,14 +87,15 @@ def sweep(
         troubles = card(run)
         interrupted = compute(run, executor, lambda tally: shown(tally.before + tally.done + tally.failed))
         troubles += finish(run)
-        splits = asked.settings.splits
-        troubles += [
-            line.removeprefix("warning: ") for line in empty_split_lines(empty_splits(split_counts(run.store), splits), splits)
-        ]
+        left, splits = len(run.store.pending()), asked.settings.splits
+        if not left:
+            lines = empty_split_lines(empty_splits(split_counts(run.store), splits), splits)
+            troubles += [line.removeprefix("warning: ") for line in lines]
     for trouble in dict.fromkeys(troubles):
         warnings.warn(trouble, stacklevel=2)
     if interrupted:
-        raise KeyboardInterrupt
+        kept = f"{run.store.samples - left} of {run.store.samples} samples are kept in {one_line(out)}"
+        raise KeyboardInterrupt(f"{kept}; go on with resume=True")
     return load(out)
 
 

@@ -19,6 +19,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import META, PENDING, ArrayDescription, described, index_fault, read_json, refuse_link
 from tactsim.errors import StorageError
+from tactsim.outside.extras import extras_named
 from tactsim.outside.files import Unreadable, opened_folder
 from tactsim.outside.text import one_line
 from tactsim.storage.files import refuse_few_descriptors
@@ -71,12 +72,15 @@ class Store:
 
         Raises
         ------
+        InputError
+            If zarr is not installed.
         StorageError
             If there is none, it is damaged, or it is of another version.
         """
-        import zarr
+        with extras_named():
+            import zarr
 
-        from tactsim.dataset.store.files import SPARE, GuardedFiles
+            from tactsim.dataset.store.files import SPARE, GuardedFiles
 
         folder = _folder(path)
         refuse_few_descriptors(folder, SPARE)

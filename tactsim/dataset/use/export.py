@@ -18,6 +18,7 @@ from tactsim.dataset.store.files import CARD
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import load, split_names
 from tactsim.errors import InputError, StorageError, TactsimError
+from tactsim.outside.extras import extras_named
 from tactsim.outside.files import opened
 from tactsim.outside.processes import run_child
 from tactsim.outside.text import one_line
@@ -114,7 +115,8 @@ def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: P
 def _hdf5(data: xarray.Dataset, attributes: dict[str, Any], target: Path, *, failed: list[dict[str, Any]], card: str) -> None:
     """One data set per variable, the first dimension the sample; dimensions and units as attributes. What failed and the card are
     data sets too: attributes would be too small for them."""
-    import h5py
+    with extras_named():
+        import h5py
 
     with h5py.File(target, "w") as file:
         file.attrs.update({name: _plain(value) for name, value in attributes.items()})

@@ -12,6 +12,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import DONE, FAILED
 from tactsim.errors import InputError, StorageError, UnknownName
+from tactsim.outside.extras import extras_named
 
 if TYPE_CHECKING:
     import xarray
@@ -179,7 +180,8 @@ class TorchSamples:
         return {**self.__dict__, "_opened": None}
 
     def _tensors(self, name: str, numbers: np.ndarray) -> Any:
-        import torch
+        with extras_named():
+            import torch
 
         values = np.asarray(self._arrays()[name].oindex[numbers])
         return torch.from_numpy(np.array(values, dtype=np.float32 if values.dtype.kind == "f" else np.int64))

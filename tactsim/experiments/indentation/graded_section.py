@@ -23,6 +23,9 @@ Why: that peak decides the threshold, whose pressure grows with nearly the third
 known less well than its neighbours. In `annulus_icf` elements a sixth of the hole long made it 0.08 % too high, so that the
 threshold was 0.14 % too low; with these it is 0.06 % too high, with fewer unknowns in sum."""
 
+KEYS = "mesh.finest, mesh.coarsest, mesh.growth and mesh.refinement"
+"""What a case gives of the sizes."""
+
 
 class MeshSettings(FrozenModel):
     """Size of the elements: finest at the edges of the body, growing with the distance from them."""
@@ -80,7 +83,7 @@ class GradedSection:
         size, n = self.size(), self.settings.refinement
         if self.shape.hole:
             size = graded_to_peak(size, finest=self.shape.hole / PEAK_ELEMENTS / n, growth=self.settings.growth / n)
-        return self.specimen.mesh(size, self.rims)
+        return self.specimen.mesh(size, self.rims, keys=KEYS)
 
     def top_edges(self, mesh: QuadraticMesh) -> Array:
         """Boundary edges (F, 3) of the mesh that the body may touch, by node numbers."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -17,6 +18,7 @@ from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.readings import Readings
 from tactsim.materials.homogeneous import stiffness_ratio
+from tactsim.refusals import first_fault
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
@@ -57,9 +59,9 @@ def computed_grasp(folder: str) -> Grasp:
     if experiment.get("kind") != "grasp":
         raise InputError(f"{folder} does not hold the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
     try:
-        return Grasp.model_validate(experiment)
+        return Grasp.model_validate_json(json.dumps(experiment), strict=True)
     except ValidationError as error:
-        raise InputError(f"the case in {folder} is not one of this version of tactsim: {error.errors()[0]['msg']}") from None
+        raise InputError(f"the case in {folder} is not one of this version of tactsim: {first_fault(error)}") from None
 
 
 def readings_of(result: Result, source: Source = TAXEL_FORCE, *, noise: float, dead: Array | None = None) -> Readings:

@@ -59,7 +59,7 @@ class Body:
     .. math:: \\int \\tfrac12 \\kappa\\, (g(F) - p / K)^2\\, dV, \\qquad \\kappa = \\frac{a G}{1 + a G / K}
 
     in its potential, with a multiple a of the shear modulus G. That is zero in every exact solution, so that it changes no order
-    of convergence (grad-div stabilisation: Franca & Hughes 1988, doi:10.1016/0045-7825(88)90094-9; Olshanskii & Reusken 2004,
+    of convergence (grad-div stabilisation: Franca & Hughes 1988, doi:10.1016/0045-7825(88)90168-5; Olshanskii & Reusken 2004,
     doi:10.1090/S0025-5718-03-01629-6). Where a material has no compiled form, its own methods are called at the points
     (``interpreted``), several times slower.
 
@@ -190,7 +190,7 @@ class Body:
 
     def rounding_forces(self) -> Array:
         """Nodal forces (n,) in N that a stress as large as the shear modulus could make without cancellation."""
-        moduli = np.array([material.shear_modulus for material in self.materials])[self.regions]
+        moduli = np.array([_instantaneous_modulus(material) for material in self.materials])[self.regions]
         points = self.points
         size = np.abs(points.gradients).max(axis=-1) + points.hoop
         forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
@@ -237,3 +237,11 @@ class Body:
             self.compliance,
             self.volume_stiffness,
         )
+
+
+def _instantaneous_modulus(material: Material) -> float:
+    """Small-strain shear modulus of a material at once in Pa."""
+    if material.relaxation is None:
+        return material.shear_modulus
+    remaining, relaxing, _ = material.relaxation.amplitudes
+    return material.shear_modulus * (remaining + float(relaxing.sum()))

@@ -17,7 +17,7 @@ class FollowerPressure:
 
     .. math:: f_a = -p \int N_a\, (\partial_\xi x \times \partial_\eta x)\, d\xi\, d\eta
 
-    with the axisymmetric and plane counterparts. Source: Schweizerhof & Ramm 1984, doi:10.1016/0045-7949(84)90034-7.
+    with the axisymmetric and plane counterparts. Source: Schweizerhof & Ramm 1984, doi:10.1016/0045-7949(84)90154-8.
 
     Parameters
     ----------

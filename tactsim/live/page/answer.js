@@ -24,8 +24,8 @@ export class Answer {
     get("again").hidden = !message.cancelled;
     if (message.busy) {
       const done = message.systems ? `, ${message.systems} part${message.systems === 1 ? "" : "s"} done` : "";
-      const stage = message.stage ? `: ${message.stage}` : "";
-      get("busy-words").textContent = `Computing ${this.#moment(message)}for ${Math.round(message.seconds)} s${done}${stage}`;
+      const stage = message.stage ? `; ${message.stage}` : "", of = this.#moment(message).replace(/, $/, "");
+      get("busy-words").textContent = `Computing the estimate${of && ` of ${of}`}: ${Math.round(message.seconds)} s so far${done}${stage}`;
     }
     const lines = message.busy ? [] : [
       ...message.words.map((words) => paragraph(words, / at \(|^At \(/.test(words) ? "place" : "")),
@@ -64,6 +64,7 @@ export class Answer {
 
   #age() {
     if (!this.message || this.message.busy || this.message.cancelled) { get("age").textContent = ""; return; }
+    if (this.message.estimator === "stored") { get("age").textContent = `${this.message.label}; computed with the result, not now`; return; }
     const seconds = Math.floor((performance.now() - this.since) / 1000), { moment } = this.message;
     const of = this.#moment(this.message), behind = this.now && moment.time != null && this.now.time !== null
       && Math.abs(this.now.time - moment.time) > 5e-4 ? `; the picture is of ${this.now.time.toFixed(3)} s` : "";

@@ -103,7 +103,7 @@ def stored_choice(folder: str | Path) -> Choice | None:
     except DAMAGE as error:
         where = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
         raise StorageError(f"{where}; run it again") from None
-    return Choice(STORED, f"As stored: {scene.estimator}"[:60], StoredEstimate(estimate), False, plain)
+    return Choice(STORED, f"As stored: {scene.estimator.replace('_', ' ')}"[:60], StoredEstimate(estimate), False, plain)
 
 
 def _inclusion(shape: EstimatedShape, quantities: dict[str, Quantity]) -> EstimatedInclusion:

@@ -8,7 +8,7 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 
 from tactsim.errors import InputError
 from tactsim.model import FrozenModel
-from tactsim.outside.text import one_line
+from tactsim.refusals import first_fault
 
 MOST_STEPS = 10**9
 """Largest number of a step or a sample: no recording or data set is as long."""
@@ -118,5 +118,4 @@ def read_command(text: str | bytes) -> Command:
         first = error.errors(include_url=False, include_context=False, include_input=False)[0]
         if first["type"] in UNKNOWN:
             raise InputError("the page sent a command that this server does not know; load it anew") from None
-        place = ".".join(map(str, first["loc"]))
-        raise InputError(f"a command could not be read: {one_line(f'{place}: ' if place else '', 80)}{first['msg']}") from None
+        raise InputError(f"a command could not be read: {first_fault(error)}") from None

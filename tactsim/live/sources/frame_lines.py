@@ -31,6 +31,7 @@ from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.live.sources.scene import LARGEST_FORCE, Frame, PageScene, plain_scene
 from tactsim.model import FrozenModel
 from tactsim.outside.text import one_line
+from tactsim.refusals import first_fault
 from tactsim.units import Length, Positive
 
 SCHEMA = "tactsim/frames/1"
@@ -81,10 +82,9 @@ def read_line(line: bytes | None, scene: PageScene | None) -> PageScene | Frame:
 
 def _description(content: dict[str, Any]) -> Description:
     try:
-        return Description.model_validate(content)
+        return Description.model_validate_json(json.dumps(content), strict=True)  # true is no number, a list is a tuple
     except ValidationError as error:
-        first = error.errors(include_url=False, include_context=False)[0]
-        raise InputError(f"description: {'.'.join(map(str, first['loc']))}: {first['msg']}"[:300]) from None
+        raise InputError(f"description: {first_fault(error)}"[:300]) from None
 
 
 def _frame(content: dict[str, Any], scene: PageScene) -> Frame:
@@ -126,16 +126,18 @@ def _matrix(content: dict[str, Any], name: str, scene: PageScene, *, missing: fl
     for number, row in enumerate(value, 1):
         if not isinstance(row, list) or len(row) != columns:
             raise InputError(f"{name}, row {number}: {_count(row, 'numbers')}; needed: {columns} numbers")
-    return np.array([list(_numbers(row, f"{name}, row {number}")) for number, row in enumerate(value, 1)])
+    return np.array(
+        [list(_numbers(row, f"{name}, row {number}", flags=missing is not None)) for number, row in enumerate(value, 1)]
+    )
 
 
 def _count(value: Any, what: str) -> str:
     return f"{len(value)} {what}" if isinstance(value, list) else shown(value)
 
 
-def _numbers(row: list[Any], place: str) -> Iterator[float]:
+def _numbers(row: list[Any], place: str, flags: bool) -> Iterator[float]:
     for column, value in enumerate(row, 1):
-        if isinstance(value, int | float):
+        if isinstance(value, int | float) and (flags or not isinstance(value, bool)):
             yield float(value) if abs(value) < 1e300 or value != value else float("nan")
         elif value is None or (isinstance(value, str) and value.lower() == "nan"):
             yield float("nan")

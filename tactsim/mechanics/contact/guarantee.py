@@ -21,7 +21,7 @@ from tactsim.fem.equilibrium.balance import Balance, ExternalForces, NewtonState
 from tactsim.fem.equilibrium.diagnosis import inside_out_in_words
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium, contact_equilibrium
-from tactsim.mechanics.contact.posed_contact import PosedContact, round_off
+from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.units import format_quantity
 
 ROUND_OFF = 1e-9
@@ -105,8 +105,7 @@ class _Recorded:
 
     def rounding(self, displacement: Array) -> Array:
         """Traction (n,) in Pa lost in the round-off of the positions; the multipliers by which a point pressed are gone."""
-        lost, _ = round_off(self.contact, displacement)
-        return np.where(self.contact.state.pressure > 0, lost, self.contact.rounding(displacement))
+        return self.contact.rounding(displacement, pressed=self.contact.state.pressure > 0)
 
 
 def _not_finite(state: ContactEquilibrium, kinematics: Kinematics) -> str | None:

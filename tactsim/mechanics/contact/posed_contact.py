@@ -64,10 +64,16 @@ class PosedContact:
         """Traction (d, n) in Pa."""
         return self.at(displacement).traction
 
-    def rounding(self, displacement: Array) -> Array:
-        """Traction (n,) in Pa lost in the round-off of the positions, which the penalties magnify; none clear of the body."""
-        gap, (lost, position_error) = self.gap(displacement), round_off(self, displacement)
-        return np.where((gap <= position_error) | (self.state.multiplier > self.pair.penalty * gap), lost, 0.0)
+    def rounding(self, displacement: Array, pressed: Array | bool = False) -> Array:
+        """Traction (n,) in Pa lost in the round-off of the positions, which the penalties magnify; none clear of the body.
+
+        ``pressed`` (n,) are points that press whatever their gap says.
+        """
+        along, across = np.abs(displacement).max(axis=0) + np.abs(self.place).max(), np.abs(self.reference).max(axis=0)
+        lost = ROUND_OFF * (self.pair.penalty * along + self.pair.tangential_penalty * (along + across))
+        gap = self.gap(displacement)
+        touching = (gap <= ROUND_OFF * (along + across)) | (self.state.multiplier > self.pair.penalty * gap)
+        return np.where(touching | pressed, lost, 0.0)
 
     def linearised(self, displacement: Array, iterate: ContactIterate) -> ContactTraction:
         """Traction and derivative as the iterated forces decide."""
@@ -83,10 +89,3 @@ class PosedContact:
 
     def _points(self, displacement: Array) -> Array:
         return self.reference + displacement - self.place[:, None]
-
-
-def round_off(contact: PosedContact, displacement: Array) -> tuple[Array, Array]:
-    """Traction (n,) in Pa that is lost in the round-off of the positions at any point that presses, and that round-off in m."""
-    along, across = np.abs(displacement).max(axis=0) + np.abs(contact.place).max(), np.abs(contact.reference).max(axis=0)
-    lost = ROUND_OFF * (contact.pair.penalty * along + contact.pair.tangential_penalty * (along + across))
-    return lost, ROUND_OFF * (along + across)

@@ -23,6 +23,7 @@ from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import ContactLaw, Material
 from tactsim.interfaces.solid import FACES
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD, TaxelLayout
+from tactsim.materials.mirrored import law_mirrors
 from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
 from tactsim.mechanics.contact.first_touch import first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
@@ -85,7 +86,7 @@ class GraspModel:
         return free_problem(self.body, options) if part is None else MirroredProblem(part, options=options)
 
     def _axes_across_mirrors(self) -> list[int]:
-        """Axes across which the middle plane mirrors the jaws where they first touch, each onto itself or onto the other."""
+        """Axes across which the middle plane mirrors the laws, and the jaws where they touch onto themselves or one another."""
         try:
             places = {side: self.touching_place(side)[:, None] for side in JAWS}
         except InputError:  # which the start says
@@ -101,7 +102,8 @@ class GraspModel:
                 apart.append(np.abs(gaps[side] - self.jaws[other].signed_distance(mirrored - places[other])[0]).max())
             return bool(max(apart) <= SAME_PLACE * (high - low).max())
 
-        return [axis for axis in range(3) if mirrors(axis)]
+        laws = [axis for axis in range(3) if all(law_mirrors(material, axis) for material in self.body.materials)]
+        return [axis for axis in laws if mirrors(axis)]
 
     def touching_place(self, side: str) -> Array:
         """Place (3,) in m of a jaw's middle at which it first touches the undeformed block.

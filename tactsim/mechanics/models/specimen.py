@@ -88,9 +88,12 @@ class Specimen(FrozenModel):
             return np.zeros_like(np.asarray(radius, float))
         return self.surface_radius - np.sqrt(self.surface_radius**2 - np.asarray(radius, float) ** 2)
 
-    def mesh(self, size: Size, rings: tuple[float, ...]) -> QuadraticMesh:
-        """Section of the specimen, r >= 0, the top of the axis at z = 0; nodes of a curved top lie on it."""
-        flat = section_mesh(self.radius, self.interfaces, size, rings=rings)
+    def mesh(self, size: Size, rings: tuple[float, ...], keys: str) -> QuadraticMesh:
+        """Section of the specimen, r >= 0, the top of the axis at z = 0; nodes of a curved top lie on it.
+
+        ``keys`` is what messages call that which the size follows from.
+        """
+        flat = section_mesh(self.radius, self.interfaces, size, rings=rings, keys=keys)
         if self.surface == "flat":
             return flat
         drop = self.depth_of_cap(flat.nodes[:, 0]) * (-1.0 if self.surface == "convex" else 1.0)

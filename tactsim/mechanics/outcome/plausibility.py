@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping
 from tactsim.interfaces import Material
 from tactsim.materials.invariant_polynomial import InvariantPolynomial
 from tactsim.materials.stability_range import stability_range
+from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.units import format_quantity
 
 TISSUE_LENGTHS = (20e-6, 0.5)
@@ -71,9 +72,15 @@ def _different(materials: Mapping[str, Material]) -> Iterator[tuple[str, Materia
 def _unusual_material(name: str, material: Material) -> Iterator[str]:
     shear, bulk = material.shear_modulus, material.bulk_modulus
     least, most = SHEAR_MODULI
+    low, high = (format_quantity(value, "Pa") for value in SHEAR_MODULI)
     if not least <= shear <= most:
-        low, high, given = (format_quantity(value, "Pa") for value in (least, most, shear))
+        given = format_quantity(shear, "Pa")
         yield f"{name} has a shear modulus of {given}; tissue and elastomers usually have {low} to {high}: is its unit right?"
+    response = shear_relaxation(material)
+    for when, modulus in (("at once", response.instantaneous_modulus), ("in the end", response.equilibrium_modulus)):
+        if least <= shear <= most and not least <= modulus <= most:
+            given = format_quantity(modulus, "Pa")
+            yield f"{name} has a shear modulus of {given} {when}, by its fractions; usual are {low} to {high}: are they right?"
     if bulk is not None and not POISSON_ZERO <= bulk / shear <= NEARLY_INCOMPRESSIBLE:
         poisson, both = (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear), [format_quantity(value, "Pa") for value in (bulk, shear)]
         end = "take bulk_modulus: null" if bulk > shear else f"its Poisson's ratio is {poisson:.3g}, that of no tissue"

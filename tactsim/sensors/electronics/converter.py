@@ -19,7 +19,7 @@ LEAST_RANGE, MOST_RANGE = 1e-6, 1e6
 class Converter(FrozenModel):
     r"""Rounds to the nearest of :math:`2^b` levels ``low + k step``, ``step = (high - low) / 2^b``.
 
-    Source: thesis, 6.2 names the board (NI PCI-6225: 16 bits); the range of 0 to 5 V is an assumption, that of the supply.
+    Source: thesis, 6.4 names the board (NI PCI-6225: 16 bits); the range of 0 to 5 V is an assumption, that of the supply.
     Where a signal with noise rests at 0 V, a range that begins there cuts and flags half of the noise; begin below zero then.
     """
 

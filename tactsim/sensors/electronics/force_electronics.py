@@ -35,7 +35,7 @@ class Sensed:
 class ForceElectronics(FrozenModel):
     """Sensors of one kind and their electronics.
 
-    Source: thesis, chapter 2 and sections 3.1.2 and 6.1 to 6.3: low pass of 40 Hz.
+    Source: thesis, chapter 2 and sections 3.1.2 and 6.1 to 6.4: low pass of 40 Hz.
     """
 
     film: ConductingFilm = Film()

@@ -26,7 +26,7 @@ class LowPass(FrozenModel):
     Its state is passed in and returned; None means settled at the first sample, as after a long rest there. A record that is
     filtered in chunks with the state handed on equals the record filtered at once.
 
-    Source: thesis, 3.1.2 (first order, 10 Hz) and 6.3 (40 Hz, no order given: first is assumed, errata E27).
+    Source: thesis, 3.1.2 (first order, 10 Hz) and 6.4 (40 Hz, no order given: first is assumed, errata E27).
     """
 
     cutoff: Positive[Frequency] = 40.0

@@ -18,7 +18,7 @@ class Noise(FrozenModel):
 
     .. math:: e_k = w_k + a \sin(2 \pi f t_k + \varphi), \qquad w_k \sim N(0, s^2)
 
-    The thesis names the 60 Hz pick-up (3.1.2, 6.3) without its size; both sizes are declared by the user, zero by default.
+    The thesis names the 60 Hz pick-up (3.1.2, 6.4) without its size; both sizes are declared by the user, zero by default.
     """
 
     white: NonNegative[Voltage] = 0.0

@@ -60,7 +60,7 @@ class SignalChain(FrozenModel):
     The low pass acts on the converted samples. There is no filter before the converter, so what lies above half the sampling
     rate is folded below it, as in the thesis's set-up.
 
-    Source: thesis, 2.2.1 (divider, supply of 5 V), 3.1.2 (buffer, low pass of 10 Hz) and 6.2, 6.3 (board, low pass of 40 Hz).
+    Source: thesis, 2.2.1 (divider, supply of 5 V), 3.1.2 (buffer, low pass of 10 Hz) and 6.4 (board, low pass of 40 Hz).
     Section 3.1.2 gives a supply of 0.5 V (errata E27): 5 V is the default. The load resistor and the sampling rate are not
     printed (Fig. 3.5: 200 Hz); 1 kohm puts the line of 3.1.2 at 25 N in the middle of the range.
     """

@@ -92,9 +92,13 @@ def test_the_completion_knows_every_command(shell: str, capsys: pytest.CaptureFi
         ("run annulus_conv", {"annulus_convex"}),
         ("show annulus_conv", {"annulus_convex"}),
         ("sweep sweep_lu", {"sweep_lumps"}),
+        ("new film_t", {"film_test"}),
+        ("new my_c", set()),
         ("new grasp my_c", {"my_case.yaml"}),
+        ("material icf_s", {"icf_stable"}),
         ("material my_c", {"my_case.yaml"}),
         ("validate table_3_3", {"table_3_3", "table_3_3_simulated"}),
+        ("validate publ", {"published"}),
         ("run my_case.yaml --out fo", {"folder"}),
         ("show folder --web --reference fo", {"folder"}),
         ("data rank fo", {"folder"}),
@@ -119,9 +123,16 @@ def test_the_completion_in_bash_offers_names_and_files(
 @pytest.mark.parametrize(("shell", "files"), [("zsh", "files:file:_files"), ("fish", "__fish_complete_path")])
 def test_the_completion_of_the_other_shells_names_the_same(shell: str, files: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["completion", shell]) == 0
-    lines = [line for line in capsys.readouterr().out.splitlines() if "annulus_convex" in line]
-    assert lines
-    assert all(files in line for line in lines)
+    lines = capsys.readouterr().out.splitlines()
+    for name, with_files in (
+        ("annulus_convex", True),
+        ("icf_stable", True),
+        ("film_thermogravimetry", True),
+        ("film_test", False),
+    ):
+        offering = [line for line in lines if re.search(rf"\b{name}\b", line)]
+        assert offering
+        assert all((files in line) == with_files for line in offering)
 
 
 def test_without_a_command_the_help_is_shown(capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,6 +11,7 @@ import pytest
 from tactsim.array import Array
 from tactsim.case.loading import load_case
 from tactsim.errors import CaseError, InputError
+from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.symmetry import mirror_axes
 from tactsim.interfaces import RigidBody
 from tactsim.materials.mirrored import law_mirrors
@@ -68,7 +69,7 @@ def fibres(*direction: float) -> dict[str, Any]:
 
 def pressed(material: Any, body: dict[str, Any], kind: str = "indentation_3d", **more: Any) -> Any:
     specimen = {"material": material, "thickness": "4 mm", "radius": "6 mm"}
-    mesh = {"finest": "1.2 mm", "growth": 2, "adaptive": False}
+    mesh = {"finest": "2 mm", "growth": 2, "adaptive": False}
     stop = {"stop": "displacement", "displacement": "0.1 mm", "contact": {"kind": "coulomb", "friction": 0}}
     experiment = {"kind": kind, "specimen": specimen, "body": body, "mesh": mesh, **stop, **more}
     return load_case({"schema": "tactsim/case/1", "experiment": experiment}).experiment
@@ -130,3 +131,12 @@ def test_a_grasp_of_oblique_tissue_is_not_its_own_mirror_image() -> None:
     tissues = [fibres(*direction) for direction in ((1, 0, 0), (1, 1, 0))]
     changes = [{"experiment.block.tissue": tissue, "experiment.inclusions": []} for tissue in tissues]
     assert [mirror_axes(load_case("grasp_plain", one).experiment) for one in changes] == [(0, 1), ()]
+
+
+def test_no_part_of_a_grasp_is_solved_across_planes_that_oblique_tissue_leaves() -> None:
+    chosen = {"experiment.inclusions": [], "experiment.mesh": {"kind": "graded", "size": "8 mm", "edge_size": "6 mm"}}
+    copies = {}
+    for direction in ((1, 0, 0), (1, 0, 1), (1, 1, 0), (1, 1, 1)):
+        case = load_case("grasp_plain", chosen | {"experiment.block.tissue": fibres(*direction)})
+        copies[direction] = grasp_model(case.experiment, grasp_mesh(case.experiment)).problem.copies
+    assert copies == {(1, 0, 0): 8, (1, 0, 1): 2, (1, 1, 0): 2, (1, 1, 1): 1}

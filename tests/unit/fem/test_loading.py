@@ -107,10 +107,12 @@ def test_an_event_that_never_comes_lets_the_path_reach_its_target():
 
 def test_the_guess_extrapolates_the_last_step():
     scalar = Scalar()
-    loads(PathFollower(scalar, CONTROL), 0.26)
-    (first, flat), (second, extrapolated) = scalar.guesses[:2]
+    loads(PathFollower(scalar, CONTROL), 0.516)
+    (first, flat), (second, extrapolated), (third, further) = scalar.guesses[:3]
     assert (first, flat) == (0.1, 0.0)  # the first step has nothing to extrapolate
     assert extrapolated == pytest.approx(np.cbrt(0.1) * second / first)
+    slope = (np.cbrt(second) - np.cbrt(first)) / (second - first)
+    assert further == pytest.approx(np.cbrt(second) + slope * (third - second))
 
 
 def test_a_start_at_the_target_takes_no_step():

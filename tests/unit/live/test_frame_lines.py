@@ -67,6 +67,12 @@ def test_a_saturated_taxel_is_not_trusted(scene: PageScene) -> None:
         (line({**frame_line(), "taxel_force_lower": [[1, 2]] * 3}), "taxel_force_lower, row 1: 2 numbers; needed: 3"),
         (line({**frame_line(), "taxel_force_upper": [[1, 2, 3], [1, "x", 2], [1, 2, 3]]}), "row 2, column 2: 'x'; needed"),
         (line({**frame_line(), "taxel_force_upper": [[1, 2, 1e9]] * 3}), "row 1, column 3 is 1e+09 N; allowed: up to 1e+06 N"),
+        (
+            line({**frame_line(), "taxel_force_upper": [[1, True, 3]] * 3}),
+            "taxel_force_upper, row 1, column 2: True; needed: a number",
+        ),
+        (line({**description(), "block_size": [0.04, 0.04, True]}), "description: block_size.2"),
+        (line({**description(), "matrix": {"rows": True, "columns": 3}}), "description: matrix.rows"),
         (line({**frame_line(), "force": 1}), "unknown key 'force'; known: time"),
         (line({**description(), "matrix": {"rows": 0}}), "description: matrix.rows"),
         (line({**description(), "colour": 1}), "description: colour"),

@@ -11,7 +11,7 @@ from principal_ogden import PrincipalOgden
 from scipy.spatial.transform import Rotation
 
 from tactsim.interfaces import Material
-from tactsim.materials.homogeneous import PATHS, diagonal
+from tactsim.materials.homogeneous import PATHS, diagonal, principal_invariants
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.library import named_material
 from tactsim.materials.linear_elastic import LinearElastic
@@ -24,6 +24,7 @@ from tactsim.materials.stability import (
     drucker_margin,
     ellipticity_margin,
     principal_stretches,
+    shear_conditions,
     strongly_elliptic,
 )
 from tactsim.materials.stability_range import around_rest, lost_intervals, stability_range
@@ -97,6 +98,26 @@ def test_both_verdicts_occur_and_another_condition_is_seen():
     assert 30 < sum(truth) < 90
     assert elliptic == truth
     assert drucker != truth
+
+
+@pytest.mark.parametrize(
+    ("coefficients", "stretches"),
+    [
+        ((-0.295, 0.764, -0.312, 0.851, -0.139), (1.1098, 0.3571)),
+        ((0.429, 0.03, -0.222, 0.658, 0.036), (1.0863, 0.2974)),
+        ((1.31, -0.161, -0.539, 1.179, -0.263), (0.9454, 2.175)),
+    ],
+)
+def test_a_state_may_be_lost_by_the_third_set_of_conditions_alone(coefficients, stretches):
+    """One in six thousand random states is: those of the tests above need no third set."""
+    material = Polynomial(coefficients=dict(zip(("c10", "c01", "c20", "c11", "c02"), coefficients, strict=True)))
+    state = np.array([*stretches, 1 / np.prod(stretches)])
+    invariants = principal_invariants(state)
+    derivatives = (*material.energy_gradient(*invariants), *material.energy_hessian(*invariants))
+    shear, opposite, _ = shear_conditions(derivatives, state)
+    assert min(shear.min(), opposite.min()) > 0
+    assert smallest_acoustic_form(material, np.diag(state), 0) < 0
+    assert ellipticity_margin(material, state) < 0
 
 
 @pytest.mark.parametrize(

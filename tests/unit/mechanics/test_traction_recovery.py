@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 
 from tactsim.fem.assembly.space import FACET_POINTS
+from tactsim.mechanics.contact import traction_recovery
 from tactsim.mechanics.contact.traction_recovery import recovered_forces, shape_functions
 from tactsim.mesh.quadratic import quadratic_mesh
 
@@ -61,6 +63,35 @@ def test_a_long_wave_stays_and_what_swings_from_facet_to_facet_does_not():
     )  # an even mesh keeps 99.9 % of a wave of six sides
     swinging = np.broadcast_to(np.where(np.arange(len(FACETS)) < len(FACETS) // 2, 1.0, -1.0)[:, None], long.shape)
     assert np.abs(recovered(np.stack([swinging] * 3))).mean() < 0.5
+
+
+def kept_of_waves(lengths, cells=24):
+    """Part that is kept of waves so many sides long along x in the middle of a plane of equal triangles."""
+    i, j = np.meshgrid(*[np.arange(cells + 1.0)] * 2, indexing="ij")
+    index = np.arange((cells + 1) ** 2).reshape(cells + 1, cells + 1)
+    a, b, c, d = index[:-1, :-1].ravel(), index[1:, :-1].ravel(), index[1:, 1:].ravel(), index[:-1, 1:].ravel()
+    corners = SIDE * np.stack([i - j / 2, np.sqrt(0.75) * j], axis=-1).reshape(-1, 2)
+    mesh = quadratic_mesh(corners, np.vstack([np.stack([a, b, c], axis=1), np.stack([a, c, d], axis=1)]))
+    weights = weights_of(mesh.elements, mesh.nodes)
+    at = np.einsum("qa,fad->fqd", shape_functions(FACET_POINTS), mesh.nodes[mesh.elements])
+    inner = np.abs(at - corners.mean(axis=0)).max(axis=2) < 4 * SIDE
+    waves = np.stack([np.cos(2 * np.pi * at[..., 0] / (length * SIDE)) for length in lengths])
+    after = recovered_forces(mesh.elements, waves * weights, weights, FACET_POINTS)
+    return [(r * w)[inner].sum() / (weights * w**2)[inner].sum() for r, w in zip(after, waves, strict=True)]
+
+
+def test_waves_fade_as_the_smoothing_says(monkeypatch):
+    """1 - (c k^2 / (1 + c k^2))^3 of a wave of 2 pi / k sides, but for what facets cannot follow. Mutants: half of c, none."""
+
+    def check():
+        k = np.pi / np.array([1.0, 1.5, 2.0])
+        left = 0.1 * k**2 / (1 + 0.1 * k**2)
+        np.testing.assert_allclose(kept_of_waves([2.0, 3.0, 4.0]), 1 - left**3, atol=0.015)
+
+    check()
+    for wrong in (0.05, 1e-6):
+        monkeypatch.setattr(traction_recovery, "SMOOTHING", wrong)
+        assert_kills(check, smoothing=())
 
 
 @pytest.mark.parametrize("order", [(1, 2, 0), (1, 0, 2)])

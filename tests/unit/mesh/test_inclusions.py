@@ -149,6 +149,28 @@ def test_what_the_block_cannot_hold_is_refused_with_its_reason(name):
         check_inclusions(BLOCK, inclusions, GAP)
 
 
+HALF = sphere(0.02, 0.02, 0.01, 4e-3)
+APART = {
+    "spheres that share a cap": ([HALF, sphere(0.027, 0.02, 0.01, 4e-3)], "overlap by 1 mm;"),
+    "centres within each other": ([HALF, sphere(0.021, 0.02, 0.01, 4e-3)], "overlap by 7 mm;"),
+    "unequal spheres": ([HALF, sphere(0.02, 0.022, 0.01, 3e-3)], "overlap by 5 mm;"),
+    "one in place of the other": ([HALF, sphere(0.02, 0.02, 0.01 + 1e-9, 4e-3)], "overlap by 8 mm;"),
+    "touching": ([sphere(0.016, 0.02, 0.01, 4e-3), sphere(0.024, 0.02, 0.01, 4e-3)], "are 0 m apart;"),
+    "a tenth": ([sphere(0.016, 0.02, 0.01, 4e-3), sphere(0.0241, 0.02, 0.01, 4e-3)], "are 100 µm apart;"),
+    "crossed tubes": (
+        [tube((0, 0.02, 0.009), (0.04, 0.02, 0.009)), tube((0.02, 0, 0.0105), (0.02, 0.04, 0.0105))],
+        "overlap by 3.7 mm;",  # two radii of 2.6 mm less 1.5 mm between the axes
+    ),
+}
+
+
+@pytest.mark.parametrize("name", APART)
+def test_how_far_inclusions_are_apart_or_overlap_is_what_they_must_move(name):
+    inclusions, words = APART[name]
+    with pytest.raises(InvalidQuantity, match=words):
+        check_inclusions(BLOCK, inclusions, GAP)
+
+
 @pytest.mark.parametrize(
     "inclusions",
     [

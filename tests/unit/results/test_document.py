@@ -43,7 +43,7 @@ def test_a_scene_that_is_not_that_of_the_kind_is_reported_when_it_is_asked_for()
     result = pretended_result(Status.CONVERGED, "done", RECORDS)
     content = json.loads(document_text(result, "x"))
     assert content["scene"] == {"profile": [1.0, 2.0]}
-    for scene, words in (({"profile": "x"}, r"scene\.profile: .*tuple"), ({}, r"scene\.profile: Field required")):
+    for scene, words in (({"profile": "x"}, r"scene\.profile: .*array"), ({}, r"scene\.profile: Field required")):
         again = result_of(parse_document(json.dumps(content | {"scene": scene}), "result.json"))
         assert again.history_values("displacement").tolist() == [1e-4, 2e-4]
         with pytest.raises(StorageError, match=f"{words}.*; run the case again"):

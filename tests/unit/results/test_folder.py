@@ -179,10 +179,20 @@ def test_the_current_folder_is_refused_like_any_other(tmp_path: Path, monkeypatc
         publish(Path("."), replace=True)
 
 
-def test_a_manifest_of_another_form_is_told_by_its_place(tmp_path):
-    (tmp_path / "manifest.json").write_text('{"files": {"a.csv": 3}}', encoding="utf-8")
+@pytest.mark.parametrize(
+    ("text", "fault"),
+    [
+        ('{"files": {"a.csv": 3}}', "files.a.csv: Input should be a valid dictionary or instance of WrittenFile"),
+        ('{"schema_version": true, "files": {}}', "schema_version: Input should be a valid integer"),
+        ('{"schema_version": 2, "files": {}}', "schema_version: Input should be less than or equal to 1"),
+        (
+            '{"files": {"a.csv": {"size": true, "sha256": "%s"}}}' % ("0" * 64),
+            "files.a.csv.size: Input should be a valid integer",
+        ),
+    ],
+)
+def test_a_manifest_of_another_form_is_told_by_its_place(tmp_path, text, fault):
+    (tmp_path / "manifest.json").write_text(text, encoding="utf-8")
     with pytest.raises(StorageError) as told:
         read_manifest(tmp_path)
-    assert str(told.value).endswith(
-        "manifest.json is damaged: files.a.csv: Input should be a valid dictionary or instance of WrittenFile"
-    )
+    assert str(told.value).endswith(f"manifest.json is damaged: {fault}")

@@ -135,6 +135,16 @@ def test_a_smaller_film_is_strained_by_its_pressure():
     np.testing.assert_allclose(small.strain(times, [1.0, 1.0]), large.strain(times, [2.0, 2.0]), rtol=1e-12)
 
 
+def test_a_smaller_film_resists_more_and_its_contacts_do_not():
+    """Half the area under half the force has the strain of the whole, twice its unstrained resistance and the same contacts."""
+    half, whole = Film(active_area=112.5e-6), Film()
+    strain = whole.strain(TIMES, np.full(81, 1.0))
+    composite = whole.composite
+    alone = composite.initial_resistance * (1 - strain) * np.exp(-composite.exponent * strain)
+    resistance = composite.contact_resistance / np.sqrt(0.5) + 2 * alone
+    np.testing.assert_allclose(1 / half.conductance(TIMES, np.full(81, 0.5)), resistance, rtol=1e-12)
+
+
 def test_the_identified_resistances_are_those_of_the_line():
     identified = identify_film(named_composite("lingstat_literal"), THESIS_LINE)
     shipped = named_composite("lingstat_identified")

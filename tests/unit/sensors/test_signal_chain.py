@@ -257,7 +257,7 @@ def test_bad_samples_are_not_filtered(bad):
         ({"converter": {"bits": 33}}, "less than or equal to 32"),
         ({"converter": {"low": 5.0}}, "must be below high"),
         ({"converter": {"high": 1e-300}}, "range from low to high"),
-        ({"load_resistor": 1e300}, "less than or equal to"),
+        ({"load_resistor": 1e30}, "less than or equal to"),
         ({"noise": {"white": -1e-3}}, "greater than or equal to 0"),
         ({"noise": {"white": float("nan")}}, "finite"),
         ({"supply": float("nan")}, "greater than 0|finite"),

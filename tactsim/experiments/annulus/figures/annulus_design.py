@@ -147,7 +147,9 @@ def _legend(result: Result) -> list[Any]:
     where = f"ri/ro = {point.ratio:g}, L = {format_quantity(point.recess, 'm')}"
     star = Line2D([], [], linestyle="none", marker="*", color=POINT_COLOUR, markersize=11, label=f"design point, {where}")
     end = f"above the dashed line: displacement at touch beyond {scene.small_displacement:g} ro, not small"
-    patches = [Patch(facecolor="0.6", edgecolor="white", hatch="///", label=end)]
+    relative = np.array(result.quantities["touch_displacement_over_radius"].value, dtype=float)
+    crossed = np.nanmin(relative) < scene.small_displacement < np.nanmax(relative)
+    patches = [Patch(facecolor="0.6", edgecolor="white", hatch="///", label=end)] if crossed else []
     if None in np.array(result.quantities["touch_displacement_over_radius"].value, dtype=object):
         never = "white: pressed to the base of the layer before it is touched"
         patches.append(Patch(facecolor="white", edgecolor="0.6", label=never))

@@ -52,7 +52,7 @@ def _draw_balance(axis: Axes, result: Result) -> None:
     readings.set_xlabel("reading")
     axis.spines["right"].set_visible(False)
     _mark_reading(axis, result, factor)
-    axis.legend(loc="upper left", fontsize=8)
+    axis.legend(loc="upper right", fontsize=8)  # the spring, and with it the balance, falls away below it
 
 
 def _mark_reading(axis: Axes, result: Result, factor: float) -> None:

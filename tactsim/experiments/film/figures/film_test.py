@@ -123,7 +123,7 @@ def _draw_creep(axis: Axes, result: Result) -> None:
     axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axis.yaxis.set_minor_formatter(NullFormatter())
     axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
-    axis.legend(loc="center right", bbox_to_anchor=(1.0, 0.62), ncols=2)
+    axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)  # beside: the curves may be anywhere
 
 
 def _draw_coefficients(axis: Axes, forces: Array, coefficients: Mapping[str, Sequence[float]]) -> None:

@@ -193,6 +193,13 @@ def test_no_words_are_cut_or_lie_on_each_other_and_the_recess_has_numbers(times)
     assert sum(low <= place <= high for place in axis.get_yticks()) >= 3
 
 
+@pytest.mark.parametrize(("design", "crossed"), [(AnnulusDesign.example(), False), (load_case(SHIPPED).experiment, True)])
+def test_the_legend_names_the_dashed_line_only_where_there_is_one(design, crossed):
+    words = " ".join(text.get_text() for text in design.run().plot("annulus_design").legends[0].get_texts())
+    assert ("above the dashed line" in words) == crossed
+    assert "largest force" in words
+
+
 def test_a_map_without_contours_is_drawn():
     result = run(recesses=(1e-6, 2e-6), forces=(0.001,), times=(0.1, 1.0, 2.0, 9.0))
     assert figures_for(result)["annulus_design.png"]().startswith(b"\x89PNG")

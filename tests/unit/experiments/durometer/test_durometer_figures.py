@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from drawn import covered_lines
 from matplotlib.text import Text
 from scenes import SOLVER, unmarked_figures
 
@@ -39,6 +40,18 @@ def test_the_reading_is_reported_with_its_interval():
         assert words in written
     assert "bottoms out" not in written
     assert "FAILED" not in written
+
+
+@pytest.mark.parametrize("depth", [0.2e-3, 0.9e-3, 1.6e-3, 2.4e-3])
+def test_no_curve_runs_through_the_legend(depth):
+    """Where tissue and spring balance near either end of the scale or between; Hertz may lie above or below."""
+    scale = DurometerScale()
+    balance = scale.force_at_zero + scale.force_per_unit * 100 * (1 - depth / scale.travel)
+    for share in (0.6, 1.3):
+        forces = [(part, balance * part**1.5) for part in (0.2, 0.4, 0.6, 0.8, 1.0)]
+        values = [{"displacement": depth * part, "reaction_force": force, "hertz_force": share * force} for part, force in forces]
+        steps = tuple(StepRecord(k, 5, 1e-12, one) for k, one in enumerate(values, 1))
+        assert covered_lines(DurometerFigures().figure(replace(made_up(**READ), steps=steps))) == []
 
 
 def test_off_the_scale_is_reported():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import pytest
+from drawn import covered_lines
 
 import tactsim as ts
 
@@ -15,7 +16,10 @@ def test_words_stand_within_the_figure_and_beside_the_curves(case: str) -> None:
     words = figure._supxlabel.get_window_extent()  # type: ignore[attr-defined]
     assert within.x0 <= words.x0
     assert words.x1 <= within.x1
-    resistance = figure.axes[0]
-    legend = resistance.get_legend().get_window_extent()
-    for line in resistance.lines:
-        assert not any(legend.contains(*point) for point in resistance.transData.transform(line.get_xydata()))
+    assert covered_lines(figure) == []
+
+
+def test_the_forces_are_named_beside_their_creep() -> None:
+    """Of the case that ``tactsim new film_test`` writes, whose curves run through the middle of the panel."""
+    figure = ts.kinds("experiment")["film_test"].example().run(None).plot("film_test")
+    assert covered_lines(figure) == []

@@ -173,3 +173,22 @@ def test_an_interruption_keeps_the_steps():
 def test_impossible_experiments_are_refused(changes, words):
     with pytest.raises(CaseError, match=words):
         thin(**changes)
+
+
+def test_a_tissue_a_thousand_times_softer_in_the_end_is_the_same_by_either_constants():
+    """Constants at once of 2 MPa, or in the end of 2 kPa: the round-off of its stress is that of the stiff one."""
+
+    def force(c10: float, constants: str) -> float:
+        memory = {"fractions": (0.5, 0.499), "times": ("0.1 s", "1 s"), "constants": constants}
+        tissue = {"kind": "neo_hookean", "c10": c10, "relaxation": memory}
+        pieces = [{"kind": "ramp", "to": "0.1 mm", "duration": "1 s"}, {"kind": "hold", "duration": "9 s"}]
+        result = TimedIndentation(
+            specimen={"material": tissue, "thickness": "4 mm", "radius": "6 mm"},
+            body={"kind": "punch"},
+            mesh={"finest": "0.7 mm", "growth": 1},
+            loading={"control": "displacement", "pieces": pieces},
+        ).run(None)
+        assert result.status == "converged"
+        return float(result.quantities["reaction_force"].value)
+
+    assert force(2e3, "equilibrium") == pytest.approx(force(2e6, "instantaneous"), rel=1e-9)
