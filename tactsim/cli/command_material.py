@@ -21,9 +21,10 @@ prints the constants, the small-strain moduli and the range of stretch in which 
 is stable. With --fit reads a uniaxial curve (CSV with a header such as
 "strain [%], nominal stress [kPa]", also as a testing machine writes it), fits every form of
 the energy, and prints the lines to put into a case file, each constant with its interval of
-95 %. A curve should hold the strains that the tissue will undergo and few others: --strains.
---save draws the curves. With --relaxation reads what relaxes at a held deformation (CSV with
-a header such as "time [s], stress [kPa]") and prints its Prony series.
+95 %. A stress that is not called true is taken as nominal. A curve should hold the strains
+that the tissue will undergo and few others: --strains. --save draws the
+curves. With --relaxation reads what relaxes at a held deformation (CSV with a header such as
+"time [s], stress [kPa]") and prints its Prony series.
 """
 EXAMPLES = """\
 examples:
