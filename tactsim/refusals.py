@@ -164,7 +164,7 @@ def _out_of_bounds(context: dict[str, Any], value: Any, fragment: dict[str, Any]
     """The message for a number beyond its bound or a list or text of the wrong length, else an empty string."""
     for name, words in _BOUNDS.items():
         if name in context:
-            unit = fragment.get("unit", "")
+            unit = next((one["unit"] for one in (fragment, *fragment.get("anyOf", ())) if "unit" in one), "")
             bound = format_quantity(context[name], unit) if unit else f"{context[name]}"
             return f"{as_written(value)} is out of range; must be {words} {bound}"
     for name, words in (("min_length", "at least"), ("max_length", "at most")):

@@ -16,14 +16,15 @@ if TYPE_CHECKING:
 NAME = "material"
 SUMMARY = "constants, stability and curves of a material; fits to measured curves"
 DESCRIPTION = """\
-Without an argument lists the materials that ship with tactsim. With a name, or a case file,
+Without an argument lists the materials that ship with tactsim. With a name, or a case,
 prints the constants, the small-strain moduli and the range of stretch in which each material
 is stable. With --fit reads a uniaxial curve (CSV with a header such as
 "strain [%], nominal stress [kPa]", also as a testing machine writes it), fits every form of
 the energy, and prints the lines to put into a case file, each constant with its interval of
-95 %. A curve should hold the strains that the tissue will undergo and few others: --strains.
---save draws the curves. With --relaxation reads what relaxes at a held deformation (CSV with
-a header such as "time [s], stress [kPa]") and prints its Prony series.
+95 %. A stress that is not called true is taken as nominal. A curve should hold the strains
+that the tissue will undergo and few others: --strains. --save draws the
+curves. With --relaxation reads what relaxes at a held deformation (CSV with a header such as
+"time [s], stress [kPa]") and prints its Prony series.
 """
 EXAMPLES = """\
 examples:
@@ -39,7 +40,7 @@ examples:
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
     what = parser.add_mutually_exclusive_group()
-    what.add_argument("material", metavar="NAME|CASE", nargs="?", help="name of a shipped material, or a case file")
+    what.add_argument("material", metavar="NAME|CASE", nargs="?", help="name of a shipped material, or a case")
     what.add_argument("--fit", metavar="CURVE.csv", type=Path, help="fit a measured uniaxial curve")
     what.add_argument("--relaxation", metavar="CURVE.csv", type=Path, help="fit a Prony series to a measured relaxation")
     parser.add_argument("--rise", metavar="TIME", help="with --relaxation: how long the deformation rose; a step without it")
@@ -150,12 +151,13 @@ def _fit(arguments: argparse.Namespace) -> int:
 
 
 def _materials(name: str) -> dict[str, Material]:
-    """The shipped material of this name, or every material of a case file by its key path."""
+    """The shipped material of this name, or every material of a case, by its key path."""
     from tactsim.case import load_case
     from tactsim.materials.library import LIBRARY, named_material
+    from tactsim.shipped import shipped_cases
 
-    looks_like_a_file = Path(name).suffix in (".yaml", ".yml") or Path(name).exists()
-    if name in LIBRARY or not looks_like_a_file:
+    is_case = Path(name).suffix in (".yaml", ".yml") or Path(name).exists() or name in {place.stem for place in shipped_cases()}
+    if name in LIBRARY or not is_case:
         return {name: named_material(name).material}
     materials = dict(_inside(load_case(name).experiment, ()))
     if not materials:

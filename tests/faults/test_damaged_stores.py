@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -22,7 +23,7 @@ from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
-from tactsim.errors import StorageError
+from tactsim.errors import StorageError, shown
 
 OLD_SWEEP = "arrays"
 """Attribute that stores of earlier versions lack."""
@@ -220,14 +221,29 @@ def test_a_store_with_nothing_but_its_description_is_filled_anew(
     assert check(store).findings == ()
 
 
-@pytest.mark.parametrize("change", [{"units": "mN"}, {"scale_factor": 1000.0}])
-def test_changed_units_are_not_read_as_data(
-    change: dict[str, Any], store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+CHANGES = [
+    (True, "units", "mN"),
+    (True, "scale_factor", 1000.0),
+    (True, "nothing", None),
+    (False, "data_type", "uint64"),
+    (False, "dimension_names", ["sample", "row"]),
+]
+"""Whether it is an attribute, its name, and a value with which what is stored would be read as something else."""
+
+
+@pytest.mark.parametrize(("attribute", "name", "value"), CHANGES)
+def test_a_changed_unit_or_type_is_not_read_as_data(
+    attribute: bool, name: str, value: Any, store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    edited(store, "force", lambda metadata: metadata["attributes"].update(change))
-    (name, value), *_ = change.items()
-    with pytest.raises(StorageError, match=rf"force/zarr\.json: {name} is {value!r}, but .* in the zarr\.json of the store"):
+    fill = {} if name != "data_type" else {"fill_value": 0}
+    edited(store, "force", lambda metadata: (metadata["attributes"] if attribute else metadata).update({name: value} | fill))
+    words = rf"force/zarr\.json: {name} is {re.escape(shown(value))}, but .* in the zarr\.json of the store"
+    with pytest.raises(StorageError, match=words):
         load(store)
+    for command in (["data", "info", str(store)], ["show", str(store)]):
+        assert main(command) == 5
+        printed = capsys.readouterr()
+        assert (printed.out, re.search(words, printed.err) is not None) == ("", True)
     assert main(["data", "export", str(store), "--to", str(tmp_path / "shards")]) == 5
     assert f"{name} is {value!r}" in capsys.readouterr().err
     assert not (tmp_path / "shards").exists()
@@ -251,6 +267,7 @@ DESCRIPTIONS: dict[str, tuple[str, Callable[[dict[str, Any]], object]]] = {
     "wide": ("force", lambda metadata: metadata.update(shape=[24, 10**12])),
     "chunk": ("force", lambda metadata: metadata["chunk_grid"]["configuration"].update(chunk_shape=[10**9, 4])),
     "no chunk": ("force", lambda metadata: metadata["chunk_grid"]["configuration"].update(chunk_shape=[0, 4])),
+    "transformed": ("force", lambda metadata: metadata.update(storage_transformers=[{"name": "nonsense"}])),
     "smaller": ("force", lambda metadata: metadata["chunk_grid"]["configuration"].update(chunk_shape=[8, 4])),
     "codec": ("force", lambda metadata: metadata["codecs"].append({"name": "nonsense"})),
     "order": ("force", lambda metadata: metadata["codecs"][0]["configuration"].update(endian="big")),
@@ -276,6 +293,7 @@ def test_a_changed_description_is_found_and_not_written_to(
     printed = capsys.readouterr()
     assert code in (4, 5)
     assert f"{name}" in printed.out + printed.err
+    assert kind != "transformed" or "storage_transformers" in printed.out
     assert "bring back" in printed.out + printed.err or "--resume" in printed.out + printed.err
     for command in (["data", "info"], ["show"]):
         assert main([*command, str(store)]) in (0, 5)

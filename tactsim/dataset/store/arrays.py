@@ -165,10 +165,12 @@ def _faults(metadata: Any) -> Iterator[str]:
     listed = metadata.get("codecs")
     codecs = [codec for codec in listed if isinstance(codec, dict)] if isinstance(listed, list) else []
     names: Any = [codec.get("name") for codec in codecs]
-    if names != [TEXT if kind == "string" else BYTES, PACKED] or metadata.get("storage_transformers"):
+    if names != [TEXT if kind == "string" else BYTES, PACKED]:
         yield f"codecs are {one_line(names, 80)}; allowed: {TEXT if kind == 'string' else BYTES}, {PACKED}"
     elif kind in TYPES and kind != "string" and codecs[0] not in _plain_codecs(str(kind)):
         yield f"the codec {BYTES} is {one_line(codecs[0], 80)}; allowed: little endian"
+    if metadata.get("storage_transformers"):
+        yield f"storage_transformers are {one_line(metadata['storage_transformers'], 80)}; allowed: none"
     names = metadata.get("dimension_names")
     if not isinstance(names, list) or len(names) != len(shape) or not all(isinstance(name, str) for name in names):
         yield f"dimension_names is {one_line(names, 80)}; expected: {len(shape)} names"

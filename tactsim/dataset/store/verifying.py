@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
@@ -169,7 +170,8 @@ def refuse_holes(store: Store, names: Iterable[str], samples: Array) -> None:
 
 
 def refuse_redescribed(store: Store) -> None:
-    """Refuses arrays whose units or other attributes are no longer those that the store gathered when it was made.
+    """Refuses arrays whose units, type or anything else but the number of samples are no longer those that the store gathered
+    when it was made.
 
     Raises
     ------
@@ -178,15 +180,24 @@ def refuse_redescribed(store: Store) -> None:
     """
     gathered = consolidated_metadata(store.path)
     for name, array in store.described.items():
-        whole = gathered.get(name)
-        now, made = array.metadata.get("attributes"), whole.get("attributes") if isinstance(whole, dict) else None
-        if isinstance(now, dict) and isinstance(made, dict) and now != made:
-            key = next(key for key in (*now, *made) if now.get(key) != made.get(key))
-            words = f"{one_line(key, 80)} is {shown(now.get(key))}, but {shown(made.get(key))} in the {META} of the store"
+        now, made = _lasting(array.metadata), _lasting(gathered.get(name, array.metadata))
+        if now != made:
+            key = next(key for key in (*now, *made) if key not in now or key not in made or now[key] != made[key])
+            here, there = (shown(one[key]) if key in one else "missing" for one in (now, made))
+            words = f"{one_line(key, 80)} is {here}, but {there} in the {META} of the store"
             raise StorageError(
                 f"{one_line(store.path / name / META)}: {words}; tactsim data check says which is right; bring back a copy, or "
                 "remove the wrong file of an array and go on with --resume"
             )
+
+
+def _lasting(metadata: Any) -> dict[str, Any]:
+    """The attributes of an array and the rest of its description, without its shape, which grows with the samples."""
+    if not isinstance(metadata, dict):
+        return {}
+    attributes = metadata.get("attributes")
+    rest = {key: value for key, value in metadata.items() if key not in ("attributes", "shape")}
+    return (attributes if isinstance(attributes, dict) else {}) | rest
 
 
 def refuse_changed(store: Store, samples: Array) -> None:

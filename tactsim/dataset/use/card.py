@@ -14,6 +14,7 @@ from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, kind_of
 from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.verifying import refuse_redescribed
 from tactsim.outside.text import one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
@@ -178,8 +179,15 @@ def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -
 
 
 def description(path: str | Path) -> str:
-    """What ``tactsim data info`` prints."""
+    """What ``tactsim data info`` prints.
+
+    Raises
+    ------
+    StorageError
+        If the folder is not a data set, or its description is damaged or was changed.
+    """
     store = Store.open(path)
+    refuse_redescribed(store)
     attributes = store.attributes
     lines = [one_line(attributes["title"] or path), f"  {one_line(attributes['description'])}"]
     lines += [f"  licence {one_line(attributes['license'], 80)}, sweep {one_line(attributes['sweep_id'], 80)}"]

@@ -14,6 +14,7 @@ from tactsim.experiments.localization.scene import LocalizedGrasp
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.noise import RESOLVED, ReadingNoise, solution_noise
 from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recording, check_extent
+from tactsim.outside.files import Unreadable
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_result
 from tactsim.results.result import Result, Status
@@ -34,7 +35,7 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
     InputError
         If the result has no taxels.
     StorageError
-        If there is no result, or it is damaged.
+        If there is no result, it is damaged, or the file of an inclusion's surface is gone.
     """
     stored = read_result(folder, fields=False)
     result = stored.result
@@ -53,6 +54,9 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
     try:
         scene = _scene(result, grasp, title)
         return {name: _recording(result, scene, name) for name in SOURCES if has_taxels(result, name)}
+    except Unreadable as error:
+        remedy = "the result names its path alone: bring it back, or start in the folder in which it stands"
+        raise StorageError(f"{one_line(folder)}/result.json: {one_line(error)}; {remedy}") from None
     except DAMAGE as error:
         raise StorageError(f"{incomplete}: {one_line(error)}; run the grasp again") from None
 

@@ -89,6 +89,12 @@ def test_every_material_of_a_case_is_reported(stack_file: Path, tmp_path: Path, 
     assert {"c-samples-0-material.png", "c-skin.png"} <= {path.name for path in tmp_path.iterdir()}
 
 
+def test_a_shipped_case_goes_by_its_name(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["material", "annulus_icf"]) == 0
+    assert "specimen.material (mooney_rivlin_3)" in capsys.readouterr().out
+    assert main(["material", "annulus_icv"]) == 2
+
+
 def test_a_curve_is_fitted_and_gives_lines_for_a_case(
     curve: Path, stack_file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

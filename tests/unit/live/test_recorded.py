@@ -145,6 +145,17 @@ def test_a_damaged_result_is_told(tmp_path: Path, place: tuple[str | int, ...], 
         result_recordings(folder)
 
 
+def test_the_missing_file_of_a_surface_is_no_damage_of_the_result(tmp_path: Path) -> None:
+    shape = {"kind": "surface", "path": "gone.stl", "unit": "mm", "translation": [0.02, 0.02, 0.01]}
+    folder = change(grasp_folder(tmp_path / "a"), ("scene", "inclusions", 0, "shape"), shape)
+    with pytest.raises(
+        StorageError, match=r"cannot read the surface gone\.stl: No such file .*: bring it back, or start in"
+    ) as told:
+        result_recordings(folder)
+    assert "complete" not in str(told.value)
+    assert "again" not in str(told.value)
+
+
 def test_a_reference_takes_its_place_at_the_same_closing(tmp_path: Path) -> None:
     recording = result_recordings(grasp_folder(tmp_path / "a"))["taxel_force"]
     reference = Reference.open([str(grasp_folder(tmp_path / "b", taxel_forces(8, lump=0.0), lump=False))])
