@@ -156,6 +156,10 @@ class Inclusion(CaseKind):
         """Text that changes with the geometry."""
         return hashlib.sha256(self.model_dump_json().encode()).hexdigest()
 
+    def file_content(self) -> str | None:
+        """Hash of what the file holds that the body is read from; None if it is given without one."""
+        return None
+
     def check_in_block(self, size: Array, gap: float, name: str) -> None:
         """Refuse a body that protrudes or comes nearer to a face than ``gap`` in m, by an InvalidQuantity that names both."""
         check_bounds(self.solids(size)[0].bounds(), size, gap, name)

@@ -184,7 +184,10 @@ class GraspRecord(ContactRecord[GraspModel]):
         tissue = experiment.block.tissue
         return SimulatedGrasp(
             block_size=experiment.block.size,
-            inclusions=tuple(EmbeddedShape(shape=one.shape, unlike_tissue=one.unlike(tissue)) for one in experiment.inclusions),
+            inclusions=tuple(
+                EmbeddedShape(shape=one.shape, unlike_tissue=one.unlike(tissue), file_content=one.shape.file_content())
+                for one in experiment.inclusions
+            ),
             jaws={side: experiment.jaw(side) for side in JAWS},
             jaw_places=self._places(),
             matrix=experiment.matrix,

@@ -9,6 +9,7 @@ from pydantic import AfterValidator
 
 from tactsim.array import Array
 from tactsim.contact.jaw import Jaw
+from tactsim.errors import StorageError
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.any_inclusion import AnyInclusion, inclusion_name
@@ -29,6 +30,10 @@ def _of_both_jaws(value: dict[str, Any]) -> dict[str, Any]:
 BothJaws = AfterValidator(_of_both_jaws)
 
 
+class ChangedShape(StorageError):
+    """The file of a shape holds another one than was grasped."""
+
+
 class EmbeddedShape(FrozenModel):
     """An inclusion of the block."""
 
@@ -36,6 +41,21 @@ class EmbeddedShape(FrozenModel):
     """Its shape and place."""
     unlike_tissue: bool
     """Whether its material is another than that of the tissue, so that it can be felt."""
+    file_content: str | None = None
+    """Of the shape when it was grasped (`Inclusion.file_content`); None in results that do not know it."""
+
+    def check_unchanged(self, name: str) -> None:
+        """Refuse a shape that its file no longer holds, which would stand for the truth with forces of another.
+
+        Raises
+        ------
+        ChangedShape
+            If the file has changed since.
+        StorageError
+            If it cannot be read.
+        """
+        if self.file_content is not None and self.file_content != self.shape.file_content():
+            raise ChangedShape(f"{name}: its file has changed since it was grasped; bring it back, or run the grasp again")
 
 
 class GraspScene(Scene):
@@ -73,7 +93,15 @@ class GraspScene(Scene):
 
     @property
     def true_inclusions(self) -> tuple[Inclusion, ...]:
-        """The inclusions but those that are nothing but tissue."""
+        """The inclusions but those that are nothing but tissue.
+
+        Raises
+        ------
+        StorageError
+            If the file of a shape has changed since it was grasped, or cannot be read.
+        """
+        for number, one in enumerate(self.inclusions, 1):
+            one.check_unchanged(inclusion_name(number, one.shape))
         return tuple(one.shape for one in self.inclusions if one.unlike_tissue)
 
     def named_inclusion(self, number: int) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError, shown
 from tactsim.experiments.grasp.both_jaws import READ_FORCE, SATURATED, TAXEL_FORCE, has_taxels, jaws_over_time, saturated_taxels
-from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.experiments.grasp.scene import ChangedShape, GraspScene
 from tactsim.experiments.localization.scene import LocalizedGrasp
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.noise import RESOLVED, ReadingNoise, solution_noise
@@ -35,7 +35,7 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
     InputError
         If the result has no taxels.
     StorageError
-        If there is no result, it is damaged, or the file of an inclusion's surface is gone.
+        If there is no result, it is damaged, or the file of an inclusion's surface is gone or has changed.
     """
     stored = read_result(folder, fields=False)
     result = stored.result
@@ -57,6 +57,8 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
     except Unreadable as error:
         remedy = "the result names its path alone: bring it back, or start in the folder in which it stands"
         raise StorageError(f"{one_line(folder)}/result.json: {one_line(error)}; {remedy}") from None
+    except ChangedShape as error:
+        raise StorageError(f"{one_line(folder)}/result.json: {error}") from None
     except DAMAGE as error:
         raise StorageError(f"{incomplete}: {one_line(error)}; run the grasp again") from None
 

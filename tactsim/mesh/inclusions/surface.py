@@ -49,6 +49,11 @@ class Surface(Inclusion):
         place = repr((self.unit, self.translation, self.rotation)).encode()
         return hashlib.sha256(vertices.tobytes() + triangles.tobytes() + place).hexdigest()
 
+    def file_content(self) -> str:
+        """Hash of the vertices and triangles in the file."""
+        vertices, triangles = read_surface(self.path)
+        return hashlib.sha256(vertices.tobytes() + triangles.tobytes()).hexdigest()
+
     def solids(self, size: Array) -> tuple[Solid, ...]:
         """The body inside the surface."""
         return (_placed(self, *_file(self.path)),)

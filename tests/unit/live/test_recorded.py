@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
+import meshio
 import numpy as np
 import pytest
 from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, made_up_store, taxel_forces
@@ -22,7 +24,9 @@ from tactsim.live.sources.recorded import result_recordings, source_noise
 from tactsim.live.sources.reference import PlainResult, Reference
 from tactsim.live.sources.samples import Samples
 from tactsim.localization.views import views
+from tactsim.mesh.inclusions.surface import Surface
 from tactsim.results import Quantity, write_result
+from tactsim.shipped import CASES
 
 BY_NAME = {choice.name: choice for choice in offered_choices()}
 
@@ -154,6 +158,24 @@ def test_the_missing_file_of_a_surface_is_no_damage_of_the_result(tmp_path: Path
         result_recordings(folder)
     assert "complete" not in str(told.value)
     assert "again" not in str(told.value)
+
+
+def test_a_surface_whose_file_has_changed_since_is_not_shown_as_the_truth(tmp_path: Path) -> None:
+    """A file that is only written anew is the same one."""
+    lump = tmp_path / "lump.stl"
+    shutil.copy(CASES.parent / "meshes" / "lump.stl", lump)
+    shape = Surface(path=str(lump), unit="mm", translation=(0.02, 0.02, 0.01))
+    known = {"shape": shape.model_dump(mode="json"), "unlike_tissue": True, "file_content": shape.file_content()}
+    folder = change(grasp_folder(tmp_path / "a"), ("scene", "inclusions", 0), known)
+    lump.write_bytes(lump.read_bytes())
+    assert result_recordings(folder)["taxel_force"].scene.inclusions == (shape,)
+    mesh = meshio.read(lump)
+    meshio.Mesh(1.7 * mesh.points, mesh.cells).write(lump)
+    with pytest.raises(
+        StorageError,
+        match=r"result\.json: surface 1: its file has changed since it was grasped; bring it back, or run the grasp again$",
+    ):
+        result_recordings(folder)
 
 
 def test_a_reference_takes_its_place_at_the_same_closing(tmp_path: Path) -> None:
