@@ -18,6 +18,7 @@ import tactsim as ts
 from tactsim.case.writing import case_text
 from tactsim.contact.jaw import Jaw
 from tactsim.dataset import TorchSamples
+from tactsim.dataset.running import resuming
 from tactsim.dataset.running.executors import LocalWorkers
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
 from tactsim.experiments.grasp.scene import ReadGrasp
@@ -414,6 +415,17 @@ def test_an_interrupted_sweep_says_what_is_kept_and_how_to_go_on(tmp_path: Path,
     with pytest.raises(StorageError, match="has 90 samples, 8 would lose some; ask for at least as many, or choose another"):
         ts.sweep(varied, samples=8, resume=True, **how)
     assert ts.sweep(varied, samples=90, resume=True, **how).sizes["sample"] == 90
+
+
+@pytest.mark.usefixtures("in_this_process")
+def test_a_sweep_goes_on_with_changed_code_if_that_is_accepted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
+    how = {"samples": 2, "out": tmp_path / "annuli.zarr", "workers": 1, "splits": {"train": 1.0, "validation": 0.0}}
+    ts.sweep(varied, **how)
+    monkeypatch.setattr(resuming, "code_identity", lambda: "another")
+    with pytest.raises(StorageError, match=r"\(in Python: accept_changed_code=True\), or begin anew"):
+        ts.sweep(varied, resume=True, **how)
+    assert ts.sweep(varied, resume=True, accept_changed_code=True, **how).sizes["sample"] == 2
 
 
 @pytest.mark.usefixtures("in_this_process")

@@ -97,7 +97,7 @@ def _check_code(store: Store, accept_changes: bool) -> None:
     if last != code_identity() and not accept_changes:
         raise StorageError(
             f"the data set {one_line(store.path)} was computed by tactsim {one_line(last, 80)}, this is {code_identity()}; "
-            "mark what follows with --accept-changed-code, or begin anew in another folder"
+            "mark what follows with --accept-changed-code (in Python: accept_changed_code=True), or begin anew in another folder"
         )
 
 

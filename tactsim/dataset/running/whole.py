@@ -41,6 +41,7 @@ def sweep(
     samples: int | None = None,
     workers: int | None = None,
     resume: bool = False,
+    accept_changed_code: bool = False,
     title: str = "",
     **settings: Any,
 ) -> xarray.Dataset:
@@ -62,6 +63,7 @@ def sweep(
     samples : number of samples; of a grid it follows from the places
     workers : processes, by default one for each core if it pays
     resume : whether to go on in a data set that an earlier call left
+    accept_changed_code : whether to go on although tactsim has changed since; what follows is marked with its code
     title : one line for the card
     **settings : of the section ``sweep`` of a sweep file, such as ``seed``, ``design``, ``splits``
 
@@ -81,7 +83,7 @@ def sweep(
     asked = _sweep_of(variation, title, settings | ({} if samples is None else {"samples": samples}))
     with (
         closing(LocalWorkers.of(asked, workers)) as executor,
-        opened_run(asked, out, resume=resume) as run,
+        opened_run(asked, out, resume=resume, accept_changes=accept_changed_code) as run,
         count_bar("samples", run.store.samples) as shown,
     ):
         troubles = card(run)
