@@ -155,13 +155,11 @@ def __getattr__(name: str) -> Any:
         raise AttributeError(f"module 'tactsim' has no attribute {name!r}")
     import importlib
 
-    module, _, attribute = _PLACES[name].partition(":")
-    try:
-        value = globals()[name] = getattr(importlib.import_module(module), attribute)
-    except ImportError as error:
-        from tactsim.outside.extras import missing_extra
+    from tactsim.outside.extras import extras_named
 
-        raise missing_extra(error) or error from None
+    module, _, attribute = _PLACES[name].partition(":")
+    with extras_named():
+        value = globals()[name] = getattr(importlib.import_module(module), attribute)
     return value
 
 

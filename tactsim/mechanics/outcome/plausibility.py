@@ -76,11 +76,12 @@ def _unusual_material(name: str, material: Material) -> Iterator[str]:
     if not least <= shear <= most:
         given = format_quantity(shear, "Pa")
         yield f"{name} has a shear modulus of {given}; tissue and elastomers usually have {low} to {high}: is its unit right?"
-    response = shear_relaxation(material)
-    for when, modulus in (("at once", response.instantaneous_modulus), ("in the end", response.equilibrium_modulus)):
-        if least <= shear <= most and not least <= modulus <= most:
-            given = format_quantity(modulus, "Pa")
-            yield f"{name} has a shear modulus of {given} {when}, by its fractions; usual are {low} to {high}: are they right?"
+    else:
+        response = shear_relaxation(material)
+        for when, modulus in (("at once", response.instantaneous_modulus), ("in the end", response.equilibrium_modulus)):
+            if not least <= modulus <= most:
+                given, usual = format_quantity(modulus, "Pa"), f"usual are {low} to {high}"
+                yield f"{name} has a shear modulus of {given} {when}, by its fractions; {usual}: are they right?"
     if bulk is not None and not POISSON_ZERO <= bulk / shear <= NEARLY_INCOMPRESSIBLE:
         poisson, both = (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear), [format_quantity(value, "Pa") for value in (bulk, shear)]
         end = "take bulk_modulus: null" if bulk > shear else f"its Poisson's ratio is {poisson:.3g}, that of no tissue"

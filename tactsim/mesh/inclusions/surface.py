@@ -51,8 +51,7 @@ class Surface(Inclusion):
 
     def file_content(self) -> str:
         """Hash of the vertices and triangles in the file."""
-        vertices, triangles = read_surface(self.path)
-        return hashlib.sha256(vertices.tobytes() + triangles.tobytes()).hexdigest()
+        return _content(*_file(self.path))
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
         """The body inside the surface."""
@@ -97,6 +96,12 @@ def _read_surface(file: OutsideFile, written: int) -> Triangles:
     if others or not sum(map(len, triangles)):
         raise InputError(f"{path}: holds {', '.join(sorted(others)) or 'no triangles'}; allowed: triangles only")
     return joined(mesh.points, np.vstack(triangles), path)
+
+
+@lru_cache(maxsize=8)
+def _content(file: OutsideFile, written: int) -> str:
+    vertices, triangles = _read_surface(file, written)
+    return hashlib.sha256(vertices.tobytes() + triangles.tobytes()).hexdigest()
 
 
 def joined(points: Array, triangles: Array, name: str) -> Triangles:
