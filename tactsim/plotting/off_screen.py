@@ -23,12 +23,14 @@ from tactsim.outside.processes import run_child
 PATIENCE = 120.0
 """Time in s after which a renderer that does not answer is given up."""
 MODULE = "tactsim.plotting.renderer"
+ONE_THREAD = {"LP_NUM_THREADS": "0"}
+"""Mesa renders in the thread that asks: handing small pictures to others costs a tenth of their time."""
 REMEDY = "on Debian: apt-get install libegl1 libgl1-mesa-dri, or libosmesa6"
 
 
 @dataclass(frozen=True)
 class Surface:
-    """Triangles (T, 3) of points (n, 3) in one colour with light and shade, or in one per triangle (T, 3) from 0 to 1 without."""
+    """Triangles (T, 3) of points (n, 3) in one colour, lit if it is opaque, or in one per triangle (T, 3) from 0 to 1, unlit."""
 
     points: Array
     triangles: Array
@@ -71,7 +73,7 @@ def pictures(surfaces: Sequence[Surface], cameras: Sequence[Camera]) -> list[Arr
     with tempfile.TemporaryDirectory() as folder:
         scene, drawn = Path(folder) / "scene.npz", Path(folder) / "pictures.npz"
         _save(scene, surfaces, cameras)
-        done = run_child(MODULE, [str(scene), str(drawn)], time_limit=PATIENCE)
+        done = run_child(MODULE, [str(scene), str(drawn)], time_limit=PATIENCE, environment=ONE_THREAD)
         if done.out_of_time:
             raise TactsimError(f"the renderer did not answer in {PATIENCE:g} s")
         if done.code or not drawn.is_file():

@@ -1,7 +1,8 @@
 """The program that renders a scene of ``off_screen`` without a window: SCENE.npz PICTURES.npz.
 
 VTK is used without pyvista, whose import takes longer than the rendering. What is translucent is sorted from back to front
-instead of peeled in layers, each of which is a rendering of its own.
+instead of peeled in layers, each of which is a rendering of its own, and has one colour from all sides: light on a dozen layers
+takes half of the rendering, and darkens what lies behind.
 """
 
 from __future__ import annotations
@@ -92,7 +93,7 @@ def _fill(renderer: Any, parts: Mapping[int, Mapping[str, Any]], arrays: Mapping
             corners = _divided(points[triangles], FINEST * 2 * camera["half_height"])
             translucent.append((corners, np.tile(np.array(shade, np.uint8), (len(corners), 1))))
         elif part["colour"] is None:
-            renderer.AddActor(_painted(mesh, (255 * arrays[f"colour{number}"]).round().astype(np.uint8), lit=False))
+            renderer.AddActor(_painted(mesh, (255 * arrays[f"colour{number}"]).round().astype(np.uint8)))
         else:
             renderer.AddActor(_plain(mesh, part))
         if part["creases"]:
@@ -100,8 +101,9 @@ def _fill(renderer: Any, parts: Mapping[int, Mapping[str, Any]], arrays: Mapping
     if translucent:
         corners, shades = (np.concatenate(columns) for columns in zip(*translucent, strict=True))
         order = np.argsort(corners.mean(axis=1) @ _backward(camera), kind="stable")
-        mesh = _mesh(corners[order].reshape(-1, 3), np.arange(3 * len(order)).reshape(-1, 3))
-        renderer.AddActor(_painted(mesh, shades[order], lit=True))
+        sorted_mesh = _painted(_mesh(corners[order].reshape(-1, 3), np.arange(3 * len(order)).reshape(-1, 3)), shades[order])
+        sorted_mesh.ForceTranslucentOn()
+        renderer.AddActor(sorted_mesh)
 
 
 def _divided(corners: Array, longest: float) -> Array:
@@ -151,16 +153,13 @@ def _plain(mesh: Any, part: Mapping[str, Any]) -> Any:
     return actor
 
 
-def _painted(mesh: Any, colours: Array, *, lit: bool) -> Any:
-    """A surface with a colour for each triangle."""
+def _painted(mesh: Any, colours: Array) -> Any:
+    """A surface with a colour for each triangle, without light and shade."""
     mesh.GetCellData().SetScalars(numpy_to_vtk(colours, deep=True))
     actor = _actor(mesh)
     look = actor.GetProperty()
     look.SetInterpolationToFlat()
-    look.SetLighting(lit)
-    if lit:
-        look.SetAmbient(AMBIENT)
-        actor.ForceTranslucentOn()
+    look.SetLighting(False)
     return actor
 
 

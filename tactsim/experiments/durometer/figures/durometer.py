@@ -49,19 +49,17 @@ def _draw_balance(axis: Axes, result: Result) -> None:
         return travel - travel / 100 * reading
 
     readings = axis.secondary_xaxis("top", functions=(reading, depth_at))
-    readings.set_xlabel("reading")
+    readings.set_xlabel(f"reading: {_marked_reading(axis, result, factor)}")
     axis.spines["right"].set_visible(False)
-    _mark_reading(axis, result, factor)
-    axis.legend(loc="upper right", fontsize=8)  # the spring, and with it the balance, falls away below it
+    axis.legend(loc="best", fontsize=8)
 
 
-def _mark_reading(axis: Axes, result: Result, factor: float) -> None:
-    """A ring where tissue and spring balance and the reading above, or the words that there is no such place."""
+def _marked_reading(axis: Axes, result: Result, factor: float) -> str:
+    """The reading and its range in words, with a ring where tissue and spring balance; or that there is no such place."""
     if "depth" not in result.quantities:
-        axis.set_title("bottoms out: below 0" if "reading" in result.quantities else "no reading", loc="left")
-        return
+        return "below 0, the indentor bottoms out" if "reading" in result.quantities else "none"
     depth, force, reading, low, high = (
         float(result.quantities[name].value) for name in ("depth", "spring_force", "reading", "reading_low", "reading_high")
     )
     axis.plot(1e3 * depth, factor * force, "o", color=TISSUE_COLOUR, markersize=9, fillstyle="none", markeredgewidth=1.8)
-    axis.set_title(f"reading {reading:.1f} ({low:.1f} to {high:.1f})", loc="left")
+    return f"{reading:.1f} ({low:.1f} to {high:.1f})"

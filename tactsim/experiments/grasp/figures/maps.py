@@ -97,6 +97,7 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
             "ha": "center",
             "color": ink_on(colours(shade)),
             "zorder": 4,
+            "in_layout": False,  # it lies in the map
             "path_effects": [withStroke(linewidth=2.2, foreground=colours(shade))],  # a rim: no line runs through letters
         }
         x, y = corner[0] + size / 2, corner[1] + size / 2

@@ -30,7 +30,7 @@ def draw_taxel_numbers(axis: Axes, grasp: ViewedGrasp) -> None:
         small.imshow(signal, cmap=PRESSURE_COLOURS, norm=norm, origin="lower")
         for (row, column), value in np.ndenumerate(signal):
             style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": size, "color": ink_on(colours(norm(value)))}
-            small.text(column, row, f"{factor * value:.3g}", **style)
+            small.text(column, row, f"{factor * value:.3g}", in_layout=False, **style)
         small.set_xticks(range(signal.shape[1]), [f"{k + 1}" for k in range(signal.shape[1])], fontsize=7)
         small.set_yticks(range(signal.shape[0]), [f"{k + 1}" for k in range(signal.shape[0])], fontsize=7)
         small.tick_params(length=0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 from drawn import covered_lines
 from matplotlib.text import Text
@@ -42,21 +43,23 @@ def test_the_reading_is_reported_with_its_interval():
     assert "FAILED" not in written
 
 
+@pytest.mark.parametrize("reach", [1.0, 1.9])
 @pytest.mark.parametrize("depth", [0.2e-3, 0.9e-3, 1.6e-3, 2.4e-3])
-def test_no_curve_runs_through_the_legend(depth):
-    """Where tissue and spring balance near either end of the scale or between; Hertz may lie above or below."""
+def test_no_curve_runs_through_the_legend(depth, reach):
+    """Where tissue and spring balance near either end of the scale or between, and where the tissue is pressed beyond it; Hertz
+    may lie above or below."""
     scale = DurometerScale()
     balance = scale.force_at_zero + scale.force_per_unit * 100 * (1 - depth / scale.travel)
     for share in (0.6, 1.3):
-        forces = [(part, balance * part**1.5) for part in (0.2, 0.4, 0.6, 0.8, 1.0)]
+        forces = [(part, balance * part**1.5) for part in reach * np.linspace(0.1, 1, 10)]
         values = [{"displacement": depth * part, "reaction_force": force, "hertz_force": share * force} for part, force in forces]
         steps = tuple(StepRecord(k, 5, 1e-12, one) for k, one in enumerate(values, 1))
         assert covered_lines(DurometerFigures().figure(replace(made_up(**READ), steps=steps))) == []
 
 
 def test_off_the_scale_is_reported():
-    assert "bottoms out: below 0" in texts(DurometerFigures().figure(made_up(reading=0.0)))
-    assert "no reading" in texts(DurometerFigures().figure(made_up()))
+    assert "reading: below 0, the indentor bottoms out" in texts(DurometerFigures().figure(made_up(reading=0.0)))
+    assert "reading: none" in texts(DurometerFigures().figure(made_up()))
 
 
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
