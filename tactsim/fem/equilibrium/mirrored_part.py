@@ -109,7 +109,10 @@ class MirroredPart:
 
     def relaxation(self, step: RelaxationStep | None) -> RelaxationStep | None:
         """A step of time of the part's materials."""
-        return None if step is None else RelaxationStep(step.scale[self.elements], step.stress[:, self.elements])
+        if step is None:
+            return None
+        stress = np.take(step.stress, self.elements, axis=1)  # an index would give an order that the loops are compiled for anew
+        return RelaxationStep(step.scale[self.elements], stress)
 
     def _surface(self, surface: SurfaceAssembly) -> SurfacePart | None:
         """What lies on the part of a surface of the whole, the same object for the same surface; None if nothing does."""

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.body import Body, RelaxationStep
 from tactsim.fem.assembly.regularising_springs import AnchoredSprings, RegularisingSprings
 from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.equilibrium.balance import ExternalForces
@@ -105,6 +105,18 @@ def test_loads_on_the_whole_act_on_the_part():
     given = part.shared(whole.pattern.matrix(springs.stiffness(u)) @ np.ones(whole.space.size))
     assert_allclose(moved, given, rtol=1e-12)
     assert load.stiffness(displacement) is load.stiffness(displacement), "springs are folded once"
+
+
+def test_a_part_relaxes_by_the_loops_of_the_whole():
+    """Numba takes half a minute to compile them anew for stresses in another order of memory."""
+    whole = lumped()
+    part, shape = mirrored_part(whole), whole.points.weights.shape
+    generator = np.random.default_rng(0)
+    step = RelaxationStep(generator.random(shape[0]), generator.random((6, *shape)))
+    own = part.relaxation(step)
+    assert np.array_equal(own.stress, step.stress[:, part.elements])
+    assert np.array_equal(own.scale, step.scale[part.elements])
+    assert own.stress.flags.c_contiguous
 
 
 def test_bodies_that_no_plane_mirrors_have_no_part():
