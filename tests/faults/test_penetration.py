@@ -105,7 +105,7 @@ def test_a_run_that_loses_force_to_penetration_fails_and_reports_what_to_take():
 @pytest.mark.parametrize(
     ("kind", "changes", "tight", "loose"),
     [
-        (Indentation, SHALLOW, 1e-7, (1e-6, 5e-6, 2e-5)),
+        pytest.param(Indentation, SHALLOW, 1e-7, (1e-6, 5e-6, 2e-5), marks=pytest.mark.slow),
         (Indentation, SHALLOW | {"contact": SMOOTH}, 1e-7, (2e-5,)),
         pytest.param(Indentation, SHALLOW | BALL, 1e-7, (5e-6, 2e-5), marks=pytest.mark.slow),
         (Grasp, {"contact": SMOOTH}, 1e-7, (4e-6, 1e-5)),

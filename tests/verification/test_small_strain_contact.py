@@ -199,7 +199,10 @@ def test_ball_far_wider_than_a_bonded_layer(ratio, poisson_ratio, depth, factor,
     assert_kills(check, half_space=(1.0,), poisson_ratio=(factor, poisson_ratio - 0.02))
 
 
-@pytest.mark.parametrize(("ratio", "above", "below", "factor"), SKINS)
+@pytest.mark.parametrize(
+    ("ratio", "above", "below", "factor"),
+    [SKINS[0], *(pytest.param(*row, marks=pytest.mark.slow) for row in SKINS[1:])],
+)
 def test_punch_on_skin(ratio, above, below, factor, verification_record):
     skin = Layer(thickness=0.5 * RADIUS, material=elastic(ratio * SHEAR_MODULUS, above))
     force, _ = press(Punch(radius=RADIUS), 4 * RADIUS, poisson_ratio=below, layers=(skin,), growth=0.25)  # in the skin, too
