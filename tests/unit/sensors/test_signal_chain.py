@@ -139,7 +139,6 @@ def test_what_the_low_pass_leaves_of_60_hertz(cutoff, order, analog):
     warped = (np.tan(np.pi * 60 / rate) / np.tan(np.pi * cutoff / rate)) ** (2 * order)
     assert amplitude == pytest.approx(1 / np.sqrt(1 + warped), rel=1e-9)
     assert low_pass.gain(60.0, rate) == pytest.approx(amplitude, rel=1e-9)
-    assert amplitude != pytest.approx(low_pass.gain(61.0, rate), rel=3e-9)
     np.testing.assert_allclose(low_pass.gain(np.array([0.0, cutoff]), rate), [1, 1 / np.sqrt(2)], rtol=1e-9)
 
 

@@ -58,9 +58,8 @@ def test_threshold_then_the_sensor_presses_too():
     beyond = thin(stop="displacement", steps={"first": 0.05e-3}).run()
     last = beyond.steps[-1].values
     assert beyond.status == "converged"
-    assert last["sensor_force"] > 0
+    assert last["sensor_force"] > 1e-4 * last["base_force"], "far more than the tolerance of the balance"
     assert last["reaction_force"] + last["sensor_force"] == pytest.approx(last["base_force"], rel=1e-8)
-    assert last["reaction_force"] != pytest.approx(last["base_force"], rel=3e-8)
 
 
 def test_stopped_before_the_threshold_and_interruption_keep_what_was_accepted():
