@@ -145,7 +145,12 @@ def test_what_the_low_pass_leaves_of_60_hertz(cutoff, order, analog):
 def test_a_constant_is_settled_from_its_first_sample():
     recording = SignalChain().acquire(np.full((50, 2), 1e-3))
     np.testing.assert_allclose(recording.filtered, recording.voltage, rtol=1e-13)
-    assert SignalChain(low_pass=None).acquire(conductances()).filtered is not None
+
+
+def test_without_a_low_pass_the_converted_samples_are_the_filtered_ones():
+    recording = SignalChain(low_pass=None).acquire(conductances())
+    np.testing.assert_array_equal(recording.filtered, recording.voltage)
+    assert (SignalChain().acquire(conductances()).filtered != recording.voltage).any()
 
 
 def test_noise_has_its_size_frequency_and_seed():
