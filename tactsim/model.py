@@ -9,7 +9,7 @@ import math
 import sys
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
@@ -24,9 +24,18 @@ else:
     ModelMetaclass = type(BaseModel)
 
 
+def _of_class(model: type[BaseModel]) -> dict[str, Any]:
+    """What tells the class apart in a file, such as ``kind``, where it must be written there: in Python the class says it."""
+    known = {name: model.model_fields[name] for name in ("kind", "control") if name in model.model_fields}
+    required = {name: field.annotation for name, field in known.items() if field.is_required()}
+    words = {name: get_args(annotation) for name, annotation in required.items() if get_origin(annotation) is Literal}
+    return {name: choices[0] for name, choices in words.items() if len(choices) == 1}
+
+
 def _by_key(model: type[BaseModel]) -> dict[str, FieldInfo]:
     """The fields that a caller may give, by the keys that they have in a file; the kind is that of the class."""
-    return {field.alias or name: field for name, field in model.model_fields.items() if name != "kind"}
+    left_out = {"kind", *_of_class(model)}
+    return {field.alias or name: field for name, field in model.model_fields.items() if name not in left_out}
 
 
 class _Fields:
@@ -66,7 +75,7 @@ class _MadeInPython(ModelMetaclass):
         if twice := named.keys() & fields.keys():
             raise TypeError(f"{cls.__name__}: {', '.join(sorted(twice))} is given by position and by name")
         try:
-            return super().__call__(**named, **fields)
+            return super().__call__(**_of_class(cls) | named | fields)  # type: ignore[arg-type]
         except ValidationError as error:
             refusals = refusals_of(error, written(named | fields), cls)  # type: ignore[arg-type]
             places = {".".join(map(str, path)): message for path, message in refusals.items()}

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from tactsim.dataset.running.computing import computed
-from tactsim.dataset.running.executors import Executor, Outcome
+from tactsim.dataset.running.executors import Executor, TaskOutcome
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.running.run import SweepRun
 from tactsim.dataset.sampling.layout import layout_of
@@ -55,7 +55,7 @@ class Inline(Executor):
     def submit(self, samples: tuple[int, ...]) -> None:
         self.tasks.append(samples)
 
-    def wait(self, seconds: float) -> list[Outcome]:
+    def wait(self, seconds: float) -> list[TaskOutcome]:
         task = self.tasks.pop(0)
         if self.stop_after is not None:
             self.stop_after -= 1
@@ -64,8 +64,8 @@ class Inline(Executor):
         unlucky = [number for number in task if self.losing.get(number, 0) > 0]
         if unlucky:
             self.losing[unlucky[0]] -= 1
-            return [Outcome(task, None, "its process ended (SIGKILL)")]
-        return [Outcome(task, computed(self.sweep.text, task))]
+            return [TaskOutcome(task, None, "its process ended (SIGKILL)")]
+        return [TaskOutcome(task, computed(self.sweep.text, task))]
 
     def close(self) -> None:
         self.tasks = []

@@ -22,9 +22,11 @@ Function = ast.FunctionDef | ast.AsyncFunctionDef
 ENGINE = tuple(f"tactsim/{room}/" for room in ("analytic", "contact", "fem", "identification", "materials", "mesh", "sensors"))
 HOUSEHOLD = {"found", "_found", "told", "_told", "said"}
 """Names that say nothing: a value goes by what it is."""
-HOUSEHOLD_IN_ENGINE = {"WeakHold", "Memory", "PastStress", "with_past", "at_kink", "rubs", "grip", "push", "resumed", "Stretch"}
-HOUSEHOLD_IN_ENGINE |= {"Answer", "Pace", "pace", "_pace", "carried", "_carried"}
-"""The same in the rooms of the engine and in mechanics, where the field has a word."""
+HOUSEHOLD |= {"WeakHold", "Memory", "PastStress", "with_past", "at_kink", "rubs", "grip", "push", "resumed", "Stretch"}
+HOUSEHOLD |= {"Pace", "pace", "_pace", "carried", "_carried"}
+"""Names for which the field has a word."""
+HOUSEHOLD_IN_ENGINE = {"Answer"}
+"""In the rooms of the engine and in mechanics: an equilibrium is none, what a worker sends back is one."""
 KEYS = {
     "tactsim/dataset/ranking/measures.py: found",
     "tactsim/experiments/dma/scene.py: told",

@@ -1,5 +1,5 @@
 """The one place that writes to the terminal: what others wrote cannot steer it, and a reader that has gone away (``| head``, a
-closed window) never stops a run, nor does a full disk, but an answer that was lost on one is told when the command ends."""
+closed window) never stops a run, nor does a full disk, but output that was lost on one is reported when the command ends."""
 
 from __future__ import annotations
 

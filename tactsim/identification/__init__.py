@@ -1,1 +1,1 @@
-"""Constants from measurements: uniaxial curves."""
+"""Constants from measurements: stress-strain and relaxation curves, dynamic mechanical analysis, films, calibration lines."""

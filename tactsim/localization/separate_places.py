@@ -20,7 +20,7 @@ NOISES = 4.0
 def separate_peaks(sums: Array, least: float) -> list[tuple[int, int]]:
     """Row and column of the maxima of sums (row, column), the highest first, that rise by more than ``least`` above the saddle.
 
-    The saddle of a maximum is the highest one among the lowest points of all ways over neighbours, diagonal ones too, to a
+    The saddle of a maximum is the highest one among the lowest points of all paths over neighbours, diagonal ones too, to a
     higher maximum; the highest maximum of all has none and always counts. This is the persistence of the maxima: H. Edelsbrunner,
     D. Letscher & A. Zomorodian 2002, doi:10.1007/s00454-002-2885-2.
     """

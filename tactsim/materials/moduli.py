@@ -24,7 +24,7 @@ def poisson_ratio(shear_modulus: float, bulk_modulus: float | None) -> float:
 
 
 def check_moduli(shear_modulus: float, bulk_modulus: float | None) -> None:
-    """Nothing, for moduli in Pa that a simulation can use.
+    """Check that a simulation can use these moduli in Pa.
 
     Raises
     ------

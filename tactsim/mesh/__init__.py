@@ -1,1 +1,1 @@
-"""Meshes of quadratic elements: graded axisymmetric sections, refinement, quality."""
+"""Meshes of quadratic elements: sections, bodies of revolution and blocks with inclusions; made, read, refined, and kept."""

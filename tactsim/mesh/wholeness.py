@@ -18,7 +18,7 @@ wall: a ragged mesh is as far off as its elements are large."""
 
 
 def check_whole(mesh: QuadraticMesh, surfaces: Surfaces, name: str) -> None:
-    """Nothing if the tetrahedra hang together by their sides and bound the block and its empty spaces only.
+    """Check that the tetrahedra are joined by their sides and bound nothing but the block and its empty spaces.
 
     Raises
     ------

@@ -1,1 +1,1 @@
-"""What a sensor makes of the contact: matrices of taxels on the jaws."""
+"""What a sensor makes of contact forces: films, electronics, matrices of taxels, threshold sensors and switches."""

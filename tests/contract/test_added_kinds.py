@@ -192,6 +192,8 @@ SMALL_GRASP = """
   loading: {control: displacement, pieces: [{kind: ramp, to: 0.3 mm, duration: 1 s}]}
   mesh: {kind: structured, cells: [2, 2, 2]}
 """
+LOCALIZATION = "{kind: localization, grasp: LUMP, reference: PLAIN, noise: 1 mN, estimator: {kind: NAMED}}"
+STORED = Path(__file__).parents[2] / "cases" / "stored"
 FILM = "{kind: film_test, film: {kind: NAMED}, forces: [1 N, 2 N, 3 N], times: [1 s]}"
 
 
@@ -298,6 +300,19 @@ def test_an_estimator_is_offered_on_the_page_and_in_the_ranking(added: Any) -> N
     choice = {one.name: one for one in offered_choices()}["added"]
     assert (choice.label, choice.needs_reference) == ("added", False)
     assert not choice.estimator.estimate(Readings(plain_forces(np.array([1e-3]))[0], LAYOUT, SIZE)).present
+
+
+def test_an_estimator_is_named_in_a_case(added: Any, tmp_path: Path) -> None:
+    grasps = {"LUMP": str(STORED / "grasp_lump"), "PLAIN": str(STORED / "grasp_plain")}
+    with pytest.raises(CaseError, match="added"):
+        case(tmp_path, LOCALIZATION, grasps | {"NAMED": "added"})
+    cls = added(Estimator)
+    experiment = case(tmp_path, LOCALIZATION, grasps | {"NAMED": "added"})
+    assert type(experiment.estimator) is cls
+    own = experiment.run(None)
+    shipped = case(tmp_path, LOCALIZATION, grasps | {"NAMED": "thesis, background: reference"}).run(None)
+    assert own.status is shipped.status is Status.CONVERGED
+    assert [bool(one.quantities["present"].value) for one in (own, shipped)] == [False, True]
 
 
 def test_a_recorder_and_figures_are_found_by_the_kind_of_the_experiment(added: Any, tmp_path: Path) -> None:

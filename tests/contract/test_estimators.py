@@ -40,7 +40,8 @@ def test_what_is_found_lies_in_the_block_and_is_finite(name: str, readings: Read
             assert np.linalg.eigvalsh(one.covariance).min() >= -1e-15
         if one.region is not None:
             assert all(0 < size < 2 * SIZE.max() for size in one.region.sizes())
-            assert not one.region.contains(center + 1.0)
+            assert one.region.contains(center)
+            assert not one.region.contains(center + 2 * SIZE.max())
             assert all(np.isfinite(line).all() for away in range(3) for line in one.region.shadow(away))
     assert estimate.probability is None or estimate.probability > 0.5
     assert (estimate.classes is not None) == OFFERED[name].gives_classes

@@ -13,7 +13,7 @@ from tactsim.experiments.annulus.closed_form import ClosedForm
 from tactsim.experiments.durometer.durometer import Durometer
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.indentation_3d import SpaceIndentation
+from tactsim.experiments.indentation.indentation_3d import Indentation3D
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.experiments.switch_probe.switch_probe import SwitchProbe
 from tactsim.mechanics.outcome.success import judged, sufficient_tolerance
@@ -70,7 +70,7 @@ def test_a_tolerance_as_large_as_the_displacement_is_refused(tolerance):
         ),
         (TimedIndentation, {"penetration_tolerance": 11e-6}, "displacement of 100 µm"),
         (TimedIndentation, {"loading": PRESS, "penetration_tolerance": 1.0}, "body's fillet"),
-        (SpaceIndentation, {"penetration_tolerance": 1e-3}, "body's fillet"),
+        (Indentation3D, {"penetration_tolerance": 1e-3}, "body's fillet"),
         (Grasp, {"penetration_tolerance": 101e-6}, "closing of 1 mm|fillet of 1 mm"),
         (Grasp, {"loading": PRESS, "penetration_tolerance": 1.0}, "fillet of 1 mm"),
         (Durometer, {"penetration_tolerance": 120e-6}, "indentor's radius of 1.19 mm"),

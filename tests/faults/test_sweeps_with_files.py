@@ -95,10 +95,10 @@ class Lost(Executor):
         self.tasks.append(samples)
 
     def wait(self, seconds: float) -> list:
-        from tactsim.dataset.running.executors import Outcome
+        from tactsim.dataset.running.executors import TaskOutcome
 
         task = self.tasks.pop()
-        return [Outcome(task, computed(self.sweep.text, task, "not run", folder=self.sweep.folder))]
+        return [TaskOutcome(task, computed(self.sweep.text, task, "not run", folder=self.sweep.folder))]
 
     def close(self) -> None:
         self.tasks = []

@@ -48,15 +48,6 @@ def test_the_reading_of_the_shipped_durometer():
     assert np.diff([step.values["reaction_force"] for step in result.steps]).min() > 0
 
 
-def test_the_height_of_the_contact_on_the_sides_of_the_probe():
-    """1.468 mm at a depth of 5 mm: version 0.1.0, default mesh of the finite elements, kept in ``analytic/probe_curve.py``.
-
-    Again by ``tactsim run cases/switch_probe_fem.yaml``; the fast model reads it back from its table.
-    """
-    result = run("switch_probe_fem", "experiment.model=fast")
-    assert result.quantities["contact_height_1"].value == pytest.approx(1.468e-3, rel=1e-3)
-
-
 def test_the_largest_error_of_the_identified_film():
     """0.112: version 0.1.0, no mesh. Again by ``identify_film`` with the line of the thesis, as below."""
     identified = identify_film(named_composite("lingstat_literal"), THESIS_LINE)

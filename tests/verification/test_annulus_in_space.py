@@ -14,7 +14,7 @@ from tactsim.contact.annulus import Annulus
 from tactsim.experiments.indentation.course import DisplacementPath
 from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
+from tactsim.experiments.indentation.indentation_3d import Indentation3D, MeshSettings3D
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.revolved import SweepSymmetry
@@ -37,7 +37,7 @@ DEMANDED = 0.02
 """Part of the axisymmetric force and rise by which the shipped case may differ."""
 
 
-class Half(SpaceIndentation):
+class Half(Indentation3D):
     """As upright as a quarter, on twice its elements."""
 
     @property
@@ -45,8 +45,8 @@ class Half(SpaceIndentation):
         return SweepSymmetry.HALF
 
 
-def posed(kind=SpaceIndentation, **changes):
-    return kind(**(THIN | {"mesh": SpaceMeshSettings(sectors=2, **SIZES)} | changes))
+def posed(kind=Indentation3D, **changes):
+    return kind(**(THIN | {"mesh": MeshSettings3D(sectors=2, **SIZES)} | changes))
 
 
 def histories(result):
@@ -125,7 +125,7 @@ def test_half_a_body_is_two_quarters(quarter, verification_record):
 
 
 def test_a_leaning_annulus_is_held_in_balance_by_the_base(verification_record):
-    coarse = SpaceMeshSettings(sectors=2, **(SIZES | {"finest": 0.6e-3}))  # balance holds on any mesh and at any penetration
+    coarse = MeshSettings3D(sectors=2, **(SIZES | {"finest": 0.6e-3}))  # balance holds on any mesh and at any penetration
     experiment = posed(tilt_y=TILT, displacement=0.04e-3, penetration_tolerance=2e-6, mesh=coarse)
     model = experiment.model()
     *_, (last, _) = DisplacementPath(experiment, experiment.drive(), model).states(lambda model, split: None)

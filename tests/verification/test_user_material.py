@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from principal_ogden import PrincipalOgden
 from solids import assert_close, body_of, box, first_piola_kirchhoff, solve_near
 
@@ -94,9 +95,16 @@ def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, rela
     material = PrincipalOgden(modulus=MODULUS, alpha=3.0, bulk_modulus=2e4)
     body, unknowns = body_and_unknowns(measure, material, relaxing=relaxing, resisting=resisting)
     assert body.forms == (None, "invariants")
-    residual, tangent = forms.residual(body, unknowns), forms.tangent(body, unknowns).toarray()
-    assert_close(body.residual(unknowns), residual, 1e-12)
-    assert_close(body.pattern.matrix(body.tangent(unknowns)).toarray(), tangent, 1e-12)
+    interpreted = body.residual(unknowns), body.pattern.matrix(body.tangent(unknowns)).toarray()
+
+    def check(readable):
+        for computed, expected in zip(interpreted, (forms.residual, forms.tangent), strict=True):
+            expected = expected(readable, unknowns)
+            assert_close(computed, expected if isinstance(expected, np.ndarray) else expected.toarray(), 1e-12)
+
+    check(body)
+    harder = PrincipalOgden(modulus=MODULUS, alpha=3.0 + 1e-6, bulk_modulus=2e4)
+    assert_kills(check, exponent=(body_and_unknowns(measure, harder, relaxing=relaxing, resisting=resisting)[0],))
 
 
 @pytest.mark.parametrize("measure", MEASURES)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.array import Array
+from tactsim.interfaces.drawing import Drawing
 from tactsim.plotting.canvas import Plot, despined, titled_figure
 
-Drawing = Callable[[], bytes]
 COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#56b4e9", "#e69f00")
 """Of the estimators, distinguishable by the colour-blind: Okabe & Ito 2008."""
 MARKERS = "osD^vP"

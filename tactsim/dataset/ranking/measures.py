@@ -33,7 +33,7 @@ Statistic = Callable[..., Any]
 
 
 @dataclass(frozen=True)
-class Outcome:
+class JudgedEstimate:
     """One estimate against the truth; lengths in m, None where there is none.
 
     ``lateral``, ``depth`` and ``radius`` are errors: distance in plan, estimated less true height, estimated less true radius.
@@ -52,10 +52,10 @@ class Outcome:
     height: float | None = None
 
 
-def outcome(estimate: Estimate, truth: Truth) -> Outcome:
+def outcome(estimate: Estimate, truth: Truth) -> JudgedEstimate:
     """The strongest inclusion of an estimate against the truth."""
     if not estimate.inclusions:
-        return Outcome(truth, False, estimate.probability)
+        return JudgedEstimate(truth, False, estimate.probability)
     ball = estimate.inclusions[0]
     against: dict[str, Any] = {"found": True, "probability": estimate.probability, "center": ball.center}
     if ball.region is not None:
@@ -65,12 +65,12 @@ def outcome(estimate: Estimate, truth: Truth) -> Outcome:
         against |= {"lateral": float(np.hypot(*away[:2])), "depth": float(away[2])}
         against["radius"] = None if ball.radius is None else ball.radius - truth.radius
         against["covered"] = None if ball.region is None else ball.region.contains(np.asarray(truth.center), LEVEL)
-    return Outcome(truth, **against)
+    return JudgedEstimate(truth, **against)
 
 
 def outcomes(
     estimator: Estimator, samples: JudgedSamples, response: LumpResponse | None, *, multiple: float = 1.0, seed: int = 1
-) -> list[Outcome]:
+) -> list[JudgedEstimate]:
     """One outcome for each sample.
 
     Raises
@@ -85,7 +85,7 @@ def outcomes(
     return [outcome(estimator.estimate(each), truth) for each, truth in zip(readings, samples.truths, strict=True)]
 
 
-def measures(judged: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
+def measures(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, Any]:
     """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score.
 
     Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
@@ -110,7 +110,7 @@ def measures(judged: Sequence[Outcome], block_size: Array) -> dict[str, Any]:
     return by_name
 
 
-def penalty(one: Outcome, block_size: Array) -> float:
+def penalty(one: JudgedEstimate, block_size: Array) -> float:
     """Distance in m of the estimated from the true centre, at most half the block's plan and height together.
 
     That much is also counted for a lump that is missed and for an alarm without a lump, so that hiding does not pay; nothing is
@@ -122,7 +122,7 @@ def penalty(one: Outcome, block_size: Array) -> float:
     return 0.0 if one.found == one.truth.present else most
 
 
-def _with_misses(lumps: Sequence[Outcome], name: str, block_size: Array) -> dict[str, float] | None:
+def _with_misses(lumps: Sequence[JudgedEstimate], name: str, block_size: Array) -> dict[str, float] | None:
     """Median of an error in m over all lumps, a missed one counted as half the block's size; None for the radius."""
     if name == "radius":
         return None
@@ -158,7 +158,7 @@ def share(given: Sequence[bool]) -> dict[str, float] | None:
     return {"value": float(np.mean(given)), "low": float(low), "high": float(high)}
 
 
-def binned(judged: Sequence[Outcome], block_size: Array) -> dict[str, list[dict[str, Any]]]:
+def binned(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, list[dict[str, Any]]]:
     """For each label, the measures of lumps in parts of its range with equally many lumps."""
     lumps = [one for one in judged if one.truth.present]
     by_label: dict[str, list[dict[str, Any]]] = {}
@@ -179,7 +179,7 @@ class Ranked:
     """An estimator, its outcomes at the stated noise, and its measures at several."""
 
     name: str
-    outcomes: tuple[Outcome, ...]
+    outcomes: tuple[JudgedEstimate, ...]
     noises: Mapping[float, dict[str, Any]]
     bins: Mapping[str, list[dict[str, Any]]]
 

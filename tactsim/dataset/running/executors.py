@@ -31,7 +31,7 @@ TASKS_PER_THREAD = 2
 
 
 @dataclass(frozen=True)
-class Outcome:
+class TaskOutcome:
     """What became of a task: the bytes of its block, or None if its worker was lost, with the reason."""
 
     samples: tuple[int, ...]
@@ -52,7 +52,7 @@ class Executor(ABC):
         """Begins a task."""
 
     @abstractmethod
-    def wait(self, seconds: float) -> list[Outcome]:
+    def wait(self, seconds: float) -> list[TaskOutcome]:
         """Tasks that ended, as soon as there is one; empty after so many seconds.
 
         Raises
@@ -107,7 +107,7 @@ class LocalWorkers(Executor):
         """Gives a task to an idle process, starting one if need be."""
         self._pool.submit(samples, json.dumps({"sweep": self._text, "folder": self._folder, "samples": samples}).encode())
 
-    def wait(self, seconds: float) -> list[Outcome]:
+    def wait(self, seconds: float) -> list[TaskOutcome]:
         """What the processes finished, and the tasks of those that died."""
         return [_outcome(answer) for answer in self._pool.wait(seconds)]
 
@@ -116,7 +116,7 @@ class LocalWorkers(Executor):
         self._pool.close()
 
 
-def _outcome(answer: Answer[tuple[int, ...]]) -> Outcome:
+def _outcome(answer: Answer[tuple[int, ...]]) -> TaskOutcome:
     """What became of a task.
 
     Raises
@@ -128,13 +128,13 @@ def _outcome(answer: Answer[tuple[int, ...]]) -> Outcome:
     """
     task = answer.key
     if answer.content is None:
-        return Outcome(task, None, f"its process ended ({answer.ending})")
+        return TaskOutcome(task, None, f"its process ended ({answer.ending})")
     kind, content = answer.content[:1], answer.content[1:]
     if kind == REFUSED:
         raise CaseError(content.decode(errors="replace"))
     if kind == BROKEN:
         raise TactsimError(f"a worker failed at samples {task[0]} to {task[-1]}: {content.decode(errors='replace')}")
-    return Outcome(task, content)
+    return TaskOutcome(task, content)
 
 
 class Cluster(Executor):
@@ -165,7 +165,7 @@ class Cluster(Executor):
 
         self._tasks[self._client.submit(computed, self._text, samples, folder=self._folder, pure=False)] = samples
 
-    def wait(self, seconds: float) -> list[Outcome]:
+    def wait(self, seconds: float) -> list[TaskOutcome]:
         """What the cluster finished, and the tasks that it gave up."""
         import distributed
 
@@ -187,14 +187,14 @@ class Cluster(Executor):
         self._tasks = {}
         self._client.close()
 
-    def _outcome(self, future: Any, samples: tuple[int, ...]) -> Outcome:
+    def _outcome(self, future: Any, samples: tuple[int, ...]) -> TaskOutcome:
         from distributed.scheduler import KilledWorker
 
         if future.status == "finished":
-            return Outcome(samples, future.result())
+            return TaskOutcome(samples, future.result())
         error = future.exception() if future.status == "error" else None
         if error is None or isinstance(error, KilledWorker):
-            return Outcome(samples, None, "its Dask worker was lost")
+            return TaskOutcome(samples, None, "its Dask worker was lost")
         if isinstance(error, CaseError):
             raise error
         raise StorageError(f"the cluster cannot compute samples {samples[0]} to {samples[-1]}: {type(error).__name__}: {error}")

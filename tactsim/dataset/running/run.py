@@ -11,7 +11,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.dataset.running.computing import computed
-from tactsim.dataset.running.executors import Executor, Outcome
+from tactsim.dataset.running.executors import Executor, TaskOutcome
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, kind_of
@@ -208,7 +208,7 @@ class SweepRun:
         for group in np.split(pending, borders) if pending.size else ():
             yield [int(number) for number in group]
 
-    def _lost(self, outcome: Outcome) -> list[int]:
+    def _lost(self, outcome: TaskOutcome) -> list[int]:
         """The samples of a lost task that are tried again, each alone; the others are marked failed."""
         self.lost_in_a_row += 1
         if self.lost_in_a_row >= LOSSES_IN_A_ROW:

@@ -28,7 +28,7 @@ MOST_TIMES = 1_000_000
 
 
 def check_closed_form(inner_radius: float, outer_radius: float, material: Material) -> None:
-    """Nothing if there is a closed form of an annulus of these radii in m on this material.
+    """Check that there is a closed form of an annulus of these radii in m on this material.
 
     Raises
     ------

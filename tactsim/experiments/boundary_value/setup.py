@@ -100,8 +100,8 @@ class BoundaryValueSetup(FrozenModel):
 
     def largest_penetration(self, size: float) -> float:
         """Largest penetration in m that is allowed, of a body of this size in m."""
-        rubs = any(ContactPair(one.body, one.law).has_friction for one in self.contacts)
-        return self.penetration_tolerance or (WITH_FRICTION if rubs else PENETRATION_SHARE) * size
+        has_friction = any(ContactPair(one.body, one.law).has_friction for one in self.contacts)
+        return self.penetration_tolerance or (WITH_FRICTION if has_friction else PENETRATION_SHARE) * size
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:

@@ -127,7 +127,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         return quantities if self._read is None else quantities | readout_quantities(self._read)
 
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """Sizes, shapes and laws that the sources do not print and the case chooses, a sentence for each."""
         experiment, block = self.experiment, self._sourced.block
         size = " x ".join(format_quantity(side, "m") for side in experiment.block.size)
         assumptions = [f"block of {size} {UNPRINTED}"]

@@ -7,7 +7,7 @@ from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
 CLOCK = ("time", "closed_form_displacement", "closed_form_force", "closed_form_difference")
 """Values of a timed indentation alone."""
 SPACE = ("force_x", "force_y", "moment_x", "moment_y", "moment_z")
-"""Values of an indentation in space alone."""
+"""Values of an indentation in 3D alone."""
 THRESHOLD = {
     "threshold_force": ("N", "force on the annulus when the tissue touches the inner sensor"),
     "threshold_pressure": ("Pa", "threshold force over the annular area"),

@@ -36,7 +36,7 @@ FEW_ITERATIONS, MANY_ITERATIONS = 12, 20
 """Steps grow up to so many iterations of Newton, and shrink beyond so many: friction in space takes more than in a section."""
 
 
-class SpaceMeshSettings(MeshSettings):
+class MeshSettings3D(MeshSettings):
     """Size of the elements in the section, and the sectors in which it is swept around the body's axis."""
 
     finest: Positive[Length] | None = None
@@ -49,7 +49,7 @@ class SpaceMeshSettings(MeshSettings):
     """Sectors in a quarter turn about the body's axis, each one quadratic element wide."""
 
 
-class SpaceIndentation(DisplacedSetup, Experiment):
+class Indentation3D(DisplacedSetup, Experiment):
     """A rigid body pressed into a cylindrical specimen in space, its axis anywhere and leaning."""
 
     measure: ClassVar[Measure] = "solid"
@@ -60,7 +60,7 @@ class SpaceIndentation(DisplacedSetup, Experiment):
     """Rotation of the body about the x axis, right-handed, before that about y."""
     tilt_y: Tilt = 0.0
     """Rotation of the body about the y axis; a positive one leans its axis towards x and lowers its edge there."""
-    mesh: SpaceMeshSettings = SpaceMeshSettings()
+    mesh: MeshSettings3D = MeshSettings3D()
     """Size of the elements and number of sectors."""
 
     history_units: ClassVar[dict[str, str]] = history_units(clock=False, space=True)
@@ -69,7 +69,7 @@ class SpaceIndentation(DisplacedSetup, Experiment):
     def example(cls) -> Self:
         """A thin specimen under the sensor of chapter 3, with few elements."""
         specimen = Specimen(material="icf_stable", thickness=4e-3, radius=8e-3)
-        mesh = SpaceMeshSettings(finest=0.25e-3, growth=1.0, sectors=2)
+        mesh = MeshSettings3D(finest=0.25e-3, growth=1.0, sectors=2)
         return cls(specimen=specimen, recess=0.8e-3, displacement=0.5e-3, stop="displacement", mesh=mesh)
 
     @model_validator(mode="after")

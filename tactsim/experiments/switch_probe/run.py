@@ -7,9 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from tactsim.analytic.probe_curve import CHAPTER_5
-from tactsim.analytic.probe_force import ProbeForces, probe_forces
 from tactsim.array import Array
+from tactsim.experiments.switch_probe.probe_curve import CHAPTER_5
+from tactsim.experiments.switch_probe.probe_force import ProbeForces, probe_forces
 from tactsim.experiments.switch_probe.probe_indentation import ProbeState, probe_states
 from tactsim.experiments.switch_probe.setup import ProbeTissue, SwitchProbeSetup
 from tactsim.materials.viscoelasticity import shear_relaxation

@@ -7,10 +7,11 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import Field, model_validator
 
-from tactsim.analytic.probe_curve import CHAPTER_5
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.trapezoid import Trapezoid
 from tactsim.experiments.indentation.graded_section import MeshSettings
+from tactsim.experiments.switch_probe.probe_curve import CHAPTER_5
+from tactsim.experiments.switch_probe.probe_curve import COUNT as COUNT
 from tactsim.experiments.switch_probe.probe_indentation import ProbeIndentation
 from tactsim.materials import AnyMaterial
 from tactsim.materials.neo_hookean import NeoHookean
@@ -24,8 +25,6 @@ from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.sensors.switch_array import SwitchArray
 from tactsim.units import Length, NonNegative, Positive, Speed, format_quantity
 
-COUNT = 5
-"""Switches of the probe of chapter 5."""
 LEAST_SAMPLES, MOST_SAMPLES = 2 * COUNT, 1_000_000
 """Samples of one way: two for each switch at least; at most so many that a touch takes about ten seconds."""
 HISTORY_UNITS = {

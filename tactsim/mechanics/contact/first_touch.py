@@ -8,7 +8,7 @@ from tactsim.interfaces import RigidBody
 TOUCH = 1e-15
 """Gap at touch over the size of what is touched."""
 MISSED = 100.0
-"""Way over that size after which a body has passed."""
+"""Distance over that size after which a body has passed."""
 MOST_APPROACHES = 1000
 """Steps of the approach; each is as long as the gap, which shrinks fast unless the body misses the surface."""
 

@@ -55,7 +55,7 @@ def guaranteed_equilibrium(
 
 
 def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) -> None:
-    """Nothing, if a state keeps all that is guaranteed of an accepted one.
+    """Check that a state keeps all that is guaranteed of an accepted one.
 
     1. Unknowns, deformation and contact forces are finite numbers.
     2. J > 0 in every element whose material is not a small-strain one, and no section has passed the axis of revolution.

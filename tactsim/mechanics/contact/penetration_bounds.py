@@ -15,7 +15,7 @@ included, runs with it miss less of their force than is allowed."""
 
 
 def check_penetration(tolerance: float | None, lengths: Mapping[str, float | None]) -> None:
-    """Nothing if a tolerance in m is small beside lengths in m, given by their names; those that are None or 0 do not count.
+    """Check that a tolerance in m is small beside lengths in m, given by their names; those that are None or 0 do not count.
 
     Raises
     ------

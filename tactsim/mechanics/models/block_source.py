@@ -1,6 +1,6 @@
 """Where the mesh of a block comes from: made of tetrahedra, built of cells, or read from a file.
 
-What makes a mesh is loaded when one is made, so that a wrong word in a case is told without it.
+What makes a mesh is loaded when one is made, so that a wrong word in a case is reported without it.
 """
 
 from __future__ import annotations

@@ -127,7 +127,7 @@ class LoadedBody:
     def equilibrium(
         self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
     ) -> ContactEquilibrium:
-        """The equilibrium at these factors, reached from ``now``; its ``load`` is the way in m that the rigid bodies have moved.
+        """The equilibrium at these factors, reached from ``now``; its ``load`` is how far the rigid bodies moved, in m.
 
         Raises
         ------

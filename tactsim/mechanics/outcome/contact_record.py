@@ -128,7 +128,7 @@ class ContactRecord(ABC, Generic[Model]):
 
     @abstractmethod
     def assumptions(self) -> list[str]:
-        """What was chosen."""
+        """What the sources leave open and the case chooses, a sentence for each."""
 
     def quantities(self) -> dict[str, Quantity]:
         """Quantities of at least one step: those of every run with contact."""

@@ -9,7 +9,7 @@ import operator
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, ValidationError, create_model, model_validator
+from pydantic import BeforeValidator, Field, PlainValidator, ValidationError, create_model, model_validator
 
 from tactsim.analytic.histories import Harmonic, History, Segment
 from tactsim.errors import Refused
@@ -37,8 +37,12 @@ def check_periods(frequency: float, duration: float) -> None:
         )
 
 
+Value = Annotated[float, PlainValidator(written)]
+"""A number in SI, or a quantity as text: of which dimension, the loading knows that the piece is put into."""
+
+
 class Piece(FrozenModel):
-    """A part of a history."""
+    """A part of a history: the loading that it is put into makes displacements or forces of the values in it."""
 
     def last(self, segment: Segment) -> float:
         """The value at its end, where its last ``segment`` is up to round-off."""
@@ -61,7 +65,7 @@ class Jump(Piece):
     """A sudden change to a value, then held."""
 
     kind: Literal["jump"]
-    to: float
+    to: Value
     """The new value."""
     duration: Positive[Time]
     """How long it is held."""
@@ -75,7 +79,7 @@ class Ramp(Piece):
     """A change at a constant rate."""
 
     kind: Literal["ramp"]
-    to: float
+    to: Value
     """The value at the end."""
     duration: Positive[Time]
     """How long it takes."""
@@ -94,7 +98,7 @@ class Sine(Piece):
     """A sine about the present value."""
 
     kind: Literal["sine"]
-    amplitude: float
+    amplitude: Value
     """Amplitude."""
     frequency: Positive[Frequency]
     """Frequency."""
@@ -118,7 +122,7 @@ class Samples(Piece):
     kind: Literal["samples"]
     times: Annotated[tuple[Time, ...], Field(min_length=2)]
     """Times, increasing from zero."""
-    values: tuple[float, ...]
+    values: tuple[Value, ...]
     """One value for each time; a first one other than the present value is a jump."""
 
     @model_validator(mode="after")
@@ -188,16 +192,29 @@ class Loading(FrozenModel):
 
 def pieces_of(quantity: Any, name: str) -> Any:
     """Type of a tuple of pieces whose values are of this quantity."""
-    dimensional = [_of_quantity(cls, quantity, name) for cls in (Jump, Ramp, Sine, Samples)]
+    dimensional = [_of_quantity(cls, quantity, name) for cls in DIMENSIONLESS]
     kinds: Any = functools.reduce(operator.or_, dimensional, Hold)
-    return tuple[Annotated[kinds, Field(discriminator="kind")], ...]
+    return tuple[Annotated[kinds, Field(discriminator="kind"), BeforeValidator(_as_mapping)], ...]
+
+
+DIMENSIONLESS: tuple[type[Piece], ...] = (Jump, Ramp, Sine, Samples)
+"""Pieces whose values have no dimension yet."""
+
+
+def _as_mapping(piece: Any) -> Any:
+    """A piece without a dimension as the mapping that a case file has in its place."""
+    return dict(piece) if type(piece) in DIMENSIONLESS else piece
 
 
 def _of_quantity(cls: type[FrozenModel], quantity: Any, name: str) -> type[FrozenModel]:
-    """The piece with its bare floats replaced by the quantity."""
-    types = {float: quantity, tuple[float, ...]: tuple[quantity, ...]}
-    fields = {key: (types[f.annotation], f) for key, f in cls.model_fields.items() if f.annotation in types and not f.metadata}
-    made = create_model(f"{name}{cls.__name__}", __base__=cls, **fields)  # type: ignore[call-overload]
+    """The piece with its values replaced by the quantity."""
+    fields: dict[str, Any] = {
+        key: (quantity, ...) for key, field in cls.model_fields.items() if PlainValidator(written) in field.metadata
+    }
+    fields |= {
+        key: (tuple[quantity, ...], ...) for key, field in cls.model_fields.items() if field.annotation == tuple[Value, ...]
+    }
+    made = create_model(f"{name}{cls.__name__}", __base__=cls, **fields)
     made.__doc__ = cls.__doc__
     return made
 

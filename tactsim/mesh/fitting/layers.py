@@ -21,7 +21,7 @@ class Layers:
     Attributes
     ----------
     beneath : (n,) corner of the surface beneath each corner of a layer, of the surface itself and of the box; -1 elsewhere
-    share : (n,) way from the surface, as a part of that to the box
+    share : (n,) distance from the surface over that of the box
     """
 
     beneath: Array
@@ -61,7 +61,7 @@ class Layers:
         return Layers(np.where(beneath < 0, -1, np.searchsorted(used, beneath)), self.share[used])
 
     def bulges(self, nodes: Array, edges: Array, constraints: Constraints) -> tuple[Array, Array, Array]:
-        """Numbers (m,) of edges (e, 2) in layers, the corners (m, 2) of the surface beneath, and the ways (m, 3) in m with it."""
+        """Numbers (m,) of edges (e, 2) in layers, the corners (m, 2) of the surface beneath, and their bulge (m, 3) in m."""
         beneath, share = self.beneath[edges], self.share[edges].mean(axis=1)
         on = constraints.on[beneath].all(axis=1)
         within = (beneath >= 0).all(axis=1) & (beneath[:, 0] != beneath[:, 1]) & (share > 0) & (share < 1)

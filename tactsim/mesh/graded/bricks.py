@@ -43,7 +43,7 @@ from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.structured_block import grid, product
 
 LEAN = 0.5
-"""Way across a row over that along it, from lump to lump, above which lumps apart across it too have boxes apart there."""
+"""Distance across a row over that along it, from lump to lump, above which lumps apart across it too have boxes apart there."""
 
 
 @dataclass(frozen=True)
@@ -58,7 +58,7 @@ class Bricks:
     near, far : for each axis the coordinates in m of the planes of the grid, beside the boxes and at the faces: (planes,) if they
         are level, (p, planes) at the p planes along ``axis`` if they lean
     first : (n, 3) planes at which the boxes begin
-    away : for each axis the way (planes,) from the boxes as a part of that to the face
+    away : for each axis the distance (planes,) from the boxes over that of the face
     """
 
     axis: int
@@ -224,7 +224,7 @@ def _between(knots: Sequence[float], values: Sequence[Array], line: Array) -> Ar
 
 
 def _away(line: Array, first: Array, across: int) -> Array:
-    """Way (planes,) from the boxes, as a part of that to the face: 0 in and between the boxes, 1 at the faces."""
+    """Distance (planes,) from the boxes over that of the face: 0 in and between the boxes, 1 at the faces."""
     begin, end = int(first.min()), int(first.max()) + across
     away = np.zeros(len(line))
     if begin:

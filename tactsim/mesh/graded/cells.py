@@ -24,7 +24,7 @@ CORE_PLACE, WALL_PLACE = 0.4, 0.8
 """Distances from the middle of the box, of which the sides are one away, at which core and wall count when cells are split."""
 
 Layering = Callable[[Array, Array], Array]
-"""`layer_ends` of given settings: from corners of a body and of its box to the parts of the way at which layers end."""
+"""`layer_ends` of given settings: from corners of a body and of its box to the parts of the distance at which layers end."""
 
 
 @dataclass(frozen=True)
@@ -75,14 +75,14 @@ def layer_places(unit: Array, ends: Array) -> list[Array]:
 
 
 def layer_ends(wall: Array, box: Array, settings: BlockMeshSettings, fewer: int = 0) -> Array:
-    """Where layers between corners (..., 3) in m of a body and those of its box end, as ascending parts of the way below 1.
+    """Where layers between corners (..., 3) in m of a body and those of its box end, as ascending parts of the distance below 1.
 
     There are `LEAST_LAYERS`, and more where cells that grow from the size at inclusions to that of the block find room for them;
     less those that are to be ``fewer``.
     """
-    way = float(np.linalg.norm(box - wall, axis=-1).mean())
+    distance = float(np.linalg.norm(box - wall, axis=-1).mean())
     steps = [settings.inclusion_size]
-    while (further := min(steps[-1] * LAYER_GROWTH, settings.size)) + sum(steps) <= way:
+    while (further := min(steps[-1] * LAYER_GROWTH, settings.size)) + sum(steps) <= distance:
         steps.append(further)
         check_along(len(steps), f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
     count = max(LEAST_LAYERS, len(steps)) - fewer

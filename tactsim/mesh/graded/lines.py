@@ -37,7 +37,7 @@ SMALL, FAR = 1 / 3, 0.9
 GATHER = 0.2
 """How much the lines around a close lump crowd at its centre, where the pressure is largest; 0 is even spacing."""
 STEEP = 1.0
-"""Rise of a plane of cells across a row, over the way along it, up to which planes are level through the boxes."""
+"""Rise of a plane of cells across a row, over the distance along it, up to which planes are level through the boxes."""
 NEAREST = 0.5
 """Least fraction of a cell that must remain for another cell between a face and the box."""
 
@@ -57,7 +57,7 @@ class Line:
 
     @property
     def away(self) -> Array:
-        """Way from the box, as a part of that from the box to the face: 0 in the box, 1 at the faces that it does not touch."""
+        """Distance from the box over that of the face from it: 0 in the box, 1 at the faces that it does not touch."""
         begin, end = self.near[[self.first, self.first + self.across]]
         below = (begin - self.near) / (begin or np.inf)
         above = (self.near - end) / ((self.near[-1] - end) or np.inf)

@@ -27,6 +27,6 @@ class Lump:
         """Its middle (3,) in m."""
         return self.ball.center
 
-    def moved(self, way: Array) -> Lump:
-        """The same, moved by a way (3,) in m."""
-        return Lump(replace(self.ball, center=self.ball.center + way), self.bounds + way)
+    def moved(self, displacement: Array) -> Lump:
+        """The same, moved by a displacement (3,) in m."""
+        return Lump(replace(self.ball, center=self.ball.center + displacement), self.bounds + displacement)

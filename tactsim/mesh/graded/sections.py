@@ -28,9 +28,9 @@ class Hollow:
     outer: float
     inner: float
 
-    def moved(self, way: Array) -> Hollow:
-        """The same, moved by a way (3,) in m."""
-        return replace(self, line=replace(self.line, points=self.line.points + way))
+    def moved(self, displacement: Array) -> Hollow:
+        """The same, moved by a displacement (3,) in m."""
+        return replace(self, line=replace(self.line, points=self.line.points + displacement))
 
     def ends(self, axis: int, size: Array) -> tuple[float, float]:
         """First and last coordinate in m along an axis of the centre line in a block of size (3,) in m."""

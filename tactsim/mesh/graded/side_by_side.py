@@ -238,7 +238,7 @@ def _bent(
 
 
 def _away(lines: Array, first: int, last: int) -> Array:
-    """Way (n, lines) from the boxes, as a part of that to the face: 0 from line to line, 1 at faces that they do not touch."""
+    """Distance (n, lines) from the boxes over that of the face: 0 from line to line, 1 at faces that they do not touch."""
     begin, end, length = lines[:, [first]], lines[:, [last]], lines[:, [-1]]
     below = (begin - lines) / np.where(begin > 0, begin, np.inf)
     above = (lines - end) / np.where(length > end, length - end, np.inf)

@@ -155,7 +155,6 @@ def test_points_are_added_until_the_answer_stands():
 
 
 def test_giving_up_names_the_contact_and_keeps_the_changes(monkeypatch):
-    assert TERMS[-1] == 2048
     monkeypatch.setattr(annular_punch, "TERMS", TERMS[:3])
     message = rf"radius over thickness 90 still changes by .* not 1e-10, at {TERMS[2]} points"
     with pytest.raises(ConvergenceError, match=message) as caught:

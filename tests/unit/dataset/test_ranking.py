@@ -11,7 +11,7 @@ from made_grasps import SIZE, made_samples, made_store, plain_result, response
 from scipy.stats import norm
 
 from tactsim.cli import main
-from tactsim.dataset.ranking.measures import Outcome, binned, interval, measures, outcome, penalty, ranking, share
+from tactsim.dataset.ranking.measures import JudgedEstimate, binned, interval, measures, outcome, penalty, ranking, share
 from tactsim.dataset.ranking.report import against_baseline, as_text, record
 from tactsim.dataset.ranking.samples import Truth
 from tactsim.errors import InputError
@@ -25,7 +25,9 @@ NOTHING = Truth(2, 1e-3)
 MOST = np.hypot(20e-3, 10e-3)
 
 
-def estimated(truth: Truth, center: tuple[float, float, float] | None, radius: float = 4e-3, spread: float = 1e-3) -> Outcome:
+def estimated(
+    truth: Truth, center: tuple[float, float, float] | None, radius: float = 4e-3, spread: float = 1e-3
+) -> JudgedEstimate:
     """The outcome of an estimate with a ball there, or of none."""
     if center is None:
         return outcome(Estimate(False, (), "nothing"), truth)

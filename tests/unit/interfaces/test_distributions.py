@@ -41,7 +41,9 @@ def test_moments_are_those_of_the_distribution() -> None:
 
 
 def test_a_wrong_law_would_be_noticed() -> None:
-    assert drawn({"uniform": [1, 100]}).mean() != pytest.approx(np.exp(np.log(100) / 2), rel=1e-2)
+    """The moment by which each law is known is not that of the other over the same range."""
+    assert np.log(drawn({"uniform": [1, 100]})).mean() != pytest.approx(np.log(10), rel=1e-3)
+    assert drawn({"log_uniform": [2, 4]}).std() != pytest.approx(2 / np.sqrt(12), rel=1e-3)
 
 
 def test_weights_count() -> None:

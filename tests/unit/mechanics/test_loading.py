@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from tactsim.mechanics.paths.loading import AnyLoading
+from tactsim.errors import Refused
+from tactsim.experiments.boundary_value.conditions import ClampCondition
+from tactsim.mechanics.paths.loading import AnyLoading, DisplacementLoading, ForceLoading, Hold, Jump, Ramp, Samples, Sine
 
 ADAPTER = TypeAdapter(AnyLoading)
 
@@ -72,3 +74,32 @@ def test_what_is_taken_back_to_zero_is_zero_and_not_below_it_by_round_off(contro
 def test_bounds_count_the_end_of_a_ramp_before_a_jump():
     up, down = {"kind": "ramp", "to": "3 N", "duration": "0.3 s"}, {"kind": "jump", "to": "1 N", "duration": "1 s"}
     assert read("force", up, down).least_and_most() == (1.0, 3.0)
+
+
+def test_pieces_made_in_python_are_those_of_a_file():
+    """Their values are text, or in SI; the kind is that of the class."""
+    pieces = (
+        Jump(to="0.3 N", duration="2 s"),
+        Sine(amplitude=0.2, frequency="1 Hz", duration=np.float32(4)),
+        Ramp(to="1 N", duration="1 s"),
+        Hold(duration="3 s"),
+        Samples(times=[0, "1 s"], values=["500 mN", 0.7]),
+    )
+    written = (
+        {"kind": "jump", "to": "0.3 N", "duration": "2 s"},
+        {"kind": "sine", "amplitude": "0.2 N", "frequency": "1 Hz", "duration": "4 s"},
+        {"kind": "ramp", "to": "1 N", "duration": "1 s"},
+        {"kind": "hold", "duration": "3 s"},
+        {"kind": "samples", "times": ["0 s", "1 s"], "values": ["0.5 N", "0.7 N"]},
+    )
+    assert ForceLoading(pieces=pieces) == read("force", *written)
+    assert ForceLoading(ForceLoading(pieces).pieces) == read("force", *written)
+    with pytest.raises(Refused, match=r"DisplacementLoading: pieces\.0.*'0\.3 N' has the wrong dimension; expected a length"):
+        DisplacementLoading(pieces=pieces[:1])
+
+
+def test_what_a_class_alone_is_need_not_be_said_of_it():
+    assert ClampCondition(face="bottom").kind == "clamped"
+    assert Ramp(to=1e-3, duration=1.0) == Ramp(kind="ramp", to=1e-3, duration=1.0)
+    with pytest.raises(Refused, match="control: 'force' is not allowed"):
+        DisplacementLoading(control="force", pieces=[Hold(duration=1.0)])

@@ -6,7 +6,7 @@ from contextlib import closing
 
 import pytest
 
-from tactsim.dataset.running.executors import WORTH_A_PROCESS, LocalWorkers
+from tactsim.dataset.running.executors import LocalWorkers
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.outside import worker_pool
 from tactsim.outside.worker_pool import WorkerPool
@@ -70,4 +70,3 @@ def test_a_sweep_has_no_more_processes_than_samples_and_as_many_as_are_asked_for
     sweep = load_sweep("sweep_closed_form", samples=3)
     assert LocalWorkers.of(sweep, None).slots == 3
     assert LocalWorkers.of(sweep, 5).slots == 5
-    assert WORTH_A_PROCESS > 0

@@ -46,7 +46,7 @@ class ElastomerRankingFigures(SingleFigure):
 
 
 def _draw_readings(axis: Axes, result: Result, colours: Array) -> None:
-    """One marker per shape and elastomer; on the line the durometer would have read what the sensor foretells."""
+    """One marker per shape and elastomer; on the line the durometer would have read what the sensor predicts."""
     printed = np.array([one.durometer for one in _elastomers(result)])
     readings = _by_shape(result, "predicted_reading")
     best = np.nan_to_num(np.fmax.reduce(readings, axis=0))

@@ -1,4 +1,4 @@
-"""Indentation in space: the deformed cut, the force against the displacement, and the pressure around the annulus."""
+"""Indentation in 3D: the deformed cut, the force against the displacement, and the pressure around the annulus."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tactsim.plotting.canvas import despined, result_figure, scale_of
 from tactsim.results import Result
 
 
-class SpaceIndentationFigures(PressedFigures):
+class Indentation3DFigures(PressedFigures):
     """The cut, and the curves beside it."""
 
     kind: Literal["indentation_3d"] = "indentation_3d"

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.analytic.probe_force import ProbeCurve
+from tactsim.experiments.switch_probe.probe_force import ProbeCurve
 
 COUNT = 5
-"""Switches of the probe; the tissue reaches the first one only."""
+"""Switches of the probe of chapter 5; at the depths below the tissue reaches the first one only."""
 
 _ROWS = (
     # depth, force over shear modulus and width, contact height, force on the first switch over shear modulus and width; all in mm

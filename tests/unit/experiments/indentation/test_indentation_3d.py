@@ -8,14 +8,14 @@ import pytest
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.sphere import Sphere
 from tactsim.errors import CaseError
-from tactsim.experiments.indentation.indentation_3d import SpaceIndentation, SpaceMeshSettings
+from tactsim.experiments.indentation.indentation_3d import Indentation3D, MeshSettings3D
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.fields.surface_peaks import surface_peaks
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.revolved import SweepSymmetry
 
 SOFT = NeoHookean(c10=1000.0)
-COARSE = SpaceMeshSettings(finest=0.7e-3, growth=2.0, coarsest=2e-3, sectors=2)
+COARSE = MeshSettings3D(finest=0.7e-3, growth=2.0, coarsest=2e-3, sectors=2)
 
 
 def thin(**changes):
@@ -29,7 +29,7 @@ def thin(**changes):
         "steps": {"first": 0.03e-3},
         "penetration_tolerance": 5e-7,
     }
-    return SpaceIndentation(**(given | changes))
+    return Indentation3D(**(given | changes))
 
 
 @pytest.mark.parametrize(
@@ -58,9 +58,8 @@ def test_threshold_then_the_sensor_presses_too():
     beyond = thin(stop="displacement", steps={"first": 0.05e-3}).run()
     last = beyond.steps[-1].values
     assert beyond.status == "converged"
-    assert last["sensor_force"] > 0
+    assert last["sensor_force"] > 1e-4 * last["base_force"], "far more than the tolerance of the balance"
     assert last["reaction_force"] + last["sensor_force"] == pytest.approx(last["base_force"], rel=1e-8)
-    assert last["reaction_force"] != pytest.approx(last["base_force"], rel=3e-8)
 
 
 def test_stopped_before_the_threshold_and_interruption_keep_what_was_accepted():
