@@ -55,6 +55,9 @@ class TaxelLayout(FrozenModel):
     def borders(self, along: str) -> Array:
         """Lower and upper border in m of every column (``along`` "x") or row ("y"), from the middle of the jaw, shape (n, 2)."""
         count = self.columns if along == "x" else self.rows
+        if self.size == self.pitch:  # neighbours share a border, to the last bit
+            edges = self.pitch * (np.arange(count + 1) - count / 2)
+            return np.stack([edges[:-1], edges[1:]], axis=1)
         centres = self.pitch * (np.arange(count) - (count - 1) / 2)
         return centres[:, None] + np.array([-0.5, 0.5]) * self.size
 
