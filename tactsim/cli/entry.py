@@ -25,6 +25,7 @@ from tactsim.cli import (
     command_validate,
     console,
 )
+from tactsim.cli.interruption import interruptible
 from tactsim.errors import INTERRUPTED, InputError, StorageError, TactsimError
 from tactsim.outside.environment import check_environment
 from tactsim.outside.extras import missing_extra
@@ -110,7 +111,7 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
             console.error("name one of the commands; tactsim COMMAND --help says more")
             return InputError.exit_code
         debug = parsed.debug
-        with _printed_warnings():
+        with _printed_warnings(), interruptible():
             return int(parsed.run(parsed))
     except SystemExit as end:  # argparse ends --help and --version this way
         return int(end.code or 0)

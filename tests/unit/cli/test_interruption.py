@@ -5,10 +5,11 @@ from __future__ import annotations
 import os
 import signal
 import threading
+from argparse import Namespace
 
 import pytest
 
-from tactsim.cli import interruption
+from tactsim.cli import entry, interruption
 from tactsim.cli.interruption import SIGNALS, interruptible
 
 
@@ -18,6 +19,16 @@ def test_the_first_signal_interrupts(number: signal.Signals) -> None:
     with pytest.raises(KeyboardInterrupt), interruptible():
         signal.raise_signal(number)
     assert signal.getsignal(number) == before
+
+
+@pytest.mark.parametrize("number", SIGNALS, ids=lambda number: number.name)
+def test_a_command_that_a_signal_ends_says_so(
+    number: signal.Signals, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    stopped = Namespace(debug=False, run=lambda parsed: signal.raise_signal(number))
+    monkeypatch.setattr(entry, "_parsed", lambda parser, words: stopped)
+    assert entry.main(["list"]) == 130
+    assert capsys.readouterr().err == "error: interrupted\n"
 
 
 def test_a_deferred_signal_is_remembered() -> None:
