@@ -19,6 +19,8 @@ from sphinx.ext.napoleon.docstring import NumpyDocstring
 from sphinx.transforms import SphinxTransform
 from sphinx.util import inspect
 
+from tactsim.field_docstrings import docstrings_alone
+
 SECTIONS = ("Parameters", "Attributes", "Returns")
 ENTRY = re.compile(r"^(?P<names>[\w, *]+?) : (?P<text>.+)$")
 NAMES = re.compile(r"^[\w.*]+(, [\w.*]+)*$")
@@ -40,6 +42,7 @@ TYPES |= {"TaxelLayout", "(n,) array", "(n, ...) array", "array of any shape", "
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Connects what this module does to Sphinx."""
+    docstrings_alone().__enter__()  # the fields of a model stand below it as attributes
     for module in (_generate, _loader, _type_annotations, inspect):
         _without_metadata(module)
     app.connect("autodoc-process-docstring", _prepare, priority=100)  # before napoleon reads the sections

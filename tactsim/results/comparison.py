@@ -103,8 +103,8 @@ def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf, name_of: N
             for unit in dict.fromkeys(unit for unit in units if unit is not None):
                 of_unit = [value if one == unit else None for value, one in zip(values, units, strict=True)]
                 name = ".".join(map(str, path))
-                found = any(name in result.quantities for result in results.values())
-                differing |= dict([_in_unit(f"experiment.{name}" if found else name, of_unit, unit)])
+                twice = any(name in result.quantities for result in results.values())
+                differing |= dict([_in_unit(f"experiment.{name}" if twice else name, of_unit, unit)])
     return differing
 
 

@@ -198,7 +198,7 @@ def _of_quantity(cls: type[FrozenModel], quantity: Any, name: str) -> type[Froze
     types = {float: quantity, tuple[float, ...]: tuple[quantity, ...]}
     fields = {key: (types[f.annotation], f) for key, f in cls.model_fields.items() if f.annotation in types and not f.metadata}
     made = create_model(f"{name}{cls.__name__}", __base__=cls, **fields)  # type: ignore[call-overload]
-    made.__doc__ = cls.__doc__
+    made.__doc__ = vars(cls)["__doc__"]
     return made
 
 
