@@ -84,7 +84,7 @@ def _rate(rate: float) -> str:
 
 
 def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest: float = 0.0) -> Figure:
-    size, words = (max(narrowest, 1.6 + 3.1 * len(panels)), 3.8), f"{title}; dots: read as each switch closed, at its height"
+    size, words = (max(narrowest, 1.6 + 3.1 * len(panels)), 3.8), f"{title}; marks: read as each switch closed, at its height"
     with result_figure(result, size, below=words, title_size=TITLE_SIZE) as figure:
         axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
         for axis, panel in zip(axes, panels, strict=True):
