@@ -6,6 +6,7 @@ import builtins
 import re
 import typing
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Any
 
 from docutils import nodes
@@ -42,7 +43,9 @@ TYPES |= {"TaxelLayout", "(n,) array", "(n, ...) array", "array of any shape", "
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Connects what this module does to Sphinx."""
-    docstrings_alone().__enter__()  # the fields of a model stand below it as attributes
+    whole_build = ExitStack()
+    whole_build.enter_context(docstrings_alone())  # the fields of a model stand below it as attributes
+    app.connect("build-finished", lambda app, error: whole_build.close())
     for module in (_generate, _loader, _type_annotations, inspect):
         _without_metadata(module)
     app.connect("autodoc-process-docstring", _prepare, priority=100)  # before napoleon reads the sections
