@@ -15,6 +15,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
 from tactsim.errors import Refused
+from tactsim.field_docstrings import with_fields
 from tactsim.refusals import refusals_of
 from tactsim.units import written
 
@@ -67,6 +68,16 @@ class _MadeInPython(ModelMetaclass):
     def __init__(cls, name: str, bases: tuple[type, ...], namespace: dict[str, Any], **options: Any):
         super().__init__(name, bases, namespace, **options)
         cls.__signature__ = _Fields()
+
+    @property
+    def __doc__(cls) -> str | None:
+        """The docstring of the class and a section of its fields, as ``help`` shows it; its own text stands in its ``vars``."""
+        text = vars(cls).get("__doc__")
+        return None if text is None else with_fields(text, cls, _by_key(cls))  # type: ignore[arg-type]
+
+    @__doc__.setter
+    def __doc__(cls, text: str | None) -> None:
+        type.__dict__["__doc__"].__set__(cls, text)
 
     def __call__(cls, *values: Any, **fields: Any) -> Any:
         named = dict(zip(_by_key(cls), values, strict=False))  # type: ignore[arg-type]

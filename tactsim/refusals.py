@@ -11,6 +11,7 @@ from pydantic import BaseModel, ValidationError
 from pydantic_core.core_schema import ErrorType
 
 from tactsim.errors import Refused, shown, suggestion
+from tactsim.field_docstrings import docstrings_alone
 from tactsim.outside.text import one_line
 from tactsim.units import DECIMAL_POINT, format_quantity
 
@@ -60,7 +61,8 @@ def first_fault(error: ValidationError) -> str:
 @cache
 def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
     """The JSON Schema of a model, which takes long to make; it is only read."""
-    return model.model_json_schema(by_alias=True)
+    with docstrings_alone():
+        return model.model_json_schema(by_alias=True)
 
 
 def _details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Iterator[dict[str, Any]]:

@@ -20,16 +20,20 @@ LONGEST_NAME = 60
 def case_path(named: str | Path) -> Path:
     """The case file of a path or of the name of a shipped case, such as ``annulus_icf``; a file of that path comes first.
 
+    A folder does not: it is the result of an earlier run, more likely than not.
+
     Raises
     ------
     UnknownName
         If it is a bare name, and no shipped case has it.
     """
     path = Path(named)
-    if not re.fullmatch(rf"\w{{1,{LONGEST_NAME}}}", str(named)) or path.exists():
+    if not re.fullmatch(rf"\w{{1,{LONGEST_NAME}}}", str(named)) or (path.exists() and not path.is_dir()):
         return path
     known = {place.stem: place for place in shipped_cases()}
     if path.name not in known:
+        if path.exists():
+            return path
         raise UnknownName("case", path.name, known, listed_by="tactsim list")
     return known[path.name]
 

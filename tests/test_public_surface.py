@@ -101,6 +101,8 @@ def test_a_quantity_is_one_type_for_numbers_and_arrays(result: ts.Result) -> Non
         _ = result["largest_displacment"]
     taxels = ts.Quantity([[1.0, 2.0]], "N", "forces")
     assert taxels.to("mN").value == [[1000.0, 2000.0]]
+    assert f"{taxels.to('mN'):.1f}" == "[[1000.0, 2000.0]] mN"
+    assert f"{ts.Quantity([1.25, None], '1', 'a hole'):.1f}" == "[1.2, nan]"
     readings = ts.Result(kind="grasp", status=result.status, reason="", quantities={"taxel_force_upper": taxels})
     assert readings["taxel_force_upper"].array.dims == ("row", "column")
     assert readings["taxel_force_upper"].array.attrs["units"] == "N"

@@ -6,6 +6,7 @@ import builtins
 import re
 import typing
 from collections.abc import Callable
+from contextlib import ExitStack
 from typing import Any
 
 from docutils import nodes
@@ -18,6 +19,8 @@ from sphinx.ext.autodoc._dynamic import _loader, _type_annotations
 from sphinx.ext.napoleon.docstring import NumpyDocstring
 from sphinx.transforms import SphinxTransform
 from sphinx.util import inspect
+
+from tactsim.field_docstrings import docstrings_alone
 
 SECTIONS = ("Parameters", "Attributes", "Returns")
 ENTRY = re.compile(r"^(?P<names>[\w, *]+?) : (?P<text>.+)$")
@@ -40,6 +43,9 @@ TYPES |= {"TaxelLayout", "(n,) array", "(n, ...) array", "array of any shape", "
 
 def setup(app: Sphinx) -> dict[str, Any]:
     """Connects what this module does to Sphinx."""
+    whole_build = ExitStack()
+    whole_build.enter_context(docstrings_alone())  # the fields of a model stand below it as attributes
+    app.connect("build-finished", lambda app, error: whole_build.close())
     for module in (_generate, _loader, _type_annotations, inspect):
         _without_metadata(module)
     app.connect("autodoc-process-docstring", _prepare, priority=100)  # before napoleon reads the sections

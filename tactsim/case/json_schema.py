@@ -2,16 +2,37 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import Any
 
 from pydantic import BaseModel
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import core_schema
 
-from tactsim.case.field_docstrings import SchemaWithDescriptions
 from tactsim.case.model import any_experiment, case_class
+from tactsim.field_docstrings import docstrings_alone, field_descriptions
 from tactsim.units import format_quantity
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
+EXAMPLE = re.compile(r"\n\n>>> .*?(?=\n\n|\Z)", re.S)
+"""Of the use from Python, which a file cannot follow."""
+
+
+class SchemaWithDescriptions(GenerateJsonSchema):
+    """Describes every field by the docstring below it."""
+
+    def model_schema(self, schema: core_schema.ModelSchema) -> JsonSchemaValue:
+        """The schema of a model, its fields described, without the example of its docstring."""
+        fragment = super().model_schema(schema)
+        if "description" in fragment:
+            fragment["description"] = EXAMPLE.sub("", fragment["description"])
+        described = field_descriptions(schema["cls"])
+        for name, field in schema["cls"].model_fields.items():
+            entry = fragment.get("properties", {}).get(field.alias or name)
+            if entry is not None and name in described and "description" not in entry:
+                entry["description"] = described[name]
+        return fragment
 
 
 def case_json_schema() -> dict[str, Any]:
@@ -22,7 +43,9 @@ def case_json_schema() -> dict[str, Any]:
 
 def described(model: type[BaseModel]) -> dict[str, Any]:
     """JSON Schema of a model: quantities as text, in the words of draft 7, members of unions told apart by their keys."""
-    schema = _readable(model.model_json_schema(by_alias=True, mode="validation", schema_generator=SchemaWithDescriptions))
+    with docstrings_alone():
+        made = model.model_json_schema(by_alias=True, mode="validation", schema_generator=SchemaWithDescriptions)
+    schema = _readable(made)
     for key, reference in sorted(_told_apart(schema)):
         definition = schema["$defs"][reference.rpartition("/")[2]]
         definition["required"] = list(dict.fromkeys([key, *definition.get("required", ())]))

@@ -115,7 +115,7 @@ def experiment_class(kind: str) -> type[Experiment]:
 @cache
 def case_class(experiment: Any) -> type[Case]:
     """The case whose experiment has this type, which may be ``Any`` to check everything else."""
-    return create_model("Case", __base__=Case, __doc__=Case.__doc__, experiment=(experiment, ...))
+    return create_model("Case", __base__=Case, __doc__=vars(Case)["__doc__"], experiment=(experiment, ...))
 
 
 def any_experiment() -> Any:

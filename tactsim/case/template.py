@@ -5,9 +5,9 @@ from __future__ import annotations
 import textwrap
 from typing import Any
 
-from tactsim.case.field_docstrings import field_descriptions
 from tactsim.case.model import SCHEMA, experiment_class
 from tactsim.case.writing import LONGEST_LINE, case_document, yaml_text
+from tactsim.field_docstrings import field_descriptions
 from tactsim.materials.library import LIBRARY
 
 MATERIALS = " Names of materials: tactsim list materials."

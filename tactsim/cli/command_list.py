@@ -63,9 +63,11 @@ def _materials() -> Lines:
 
 def _classes(point: str) -> Callable[[], Lines]:
     def lines() -> Lines:
+        from tactsim.field_docstrings import docstrings_alone
         from tactsim.interfaces.points import kinds
 
-        return ((kind, (cls.__doc__ or "").partition("\n")[0]) for kind, cls in kinds(point).items())
+        with docstrings_alone():
+            return [(kind, (cls.__doc__ or "").partition("\n")[0]) for kind, cls in kinds(point).items()]
 
     return lines
 

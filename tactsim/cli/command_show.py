@@ -105,7 +105,9 @@ def _case_of(named: Path) -> Path | None:
     """
     from tactsim.shipped import case_path
 
-    if named.suffix in CASE_ENDINGS and not named.is_dir():
+    if named.is_dir():
+        return None
+    if named.suffix in CASE_ENDINGS:
         return named
     try:
         case = case_path(named)

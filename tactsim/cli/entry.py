@@ -149,8 +149,9 @@ def _parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.N
     """
     parsed, unknown = parser.parse_known_args(words)
     if unknown:
-        command = f" {words[0]}" if words[0] in [command.NAME for command in COMMANDS] else ""
-        raise InputError(f"unrecognized arguments: {one_line(' '.join(unknown))}\nsee: tactsim{command} --help")
+        named = [words[0]] if words[0] in [command.NAME for command in COMMANDS] else []
+        command = " ".join(["tactsim", *named, *([parsed.action] if "action" in parsed else [])])
+        raise InputError(f"unrecognized arguments: {one_line(' '.join(unknown))}\nsee: {command} --help")
     return parsed
 
 

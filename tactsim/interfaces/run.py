@@ -10,7 +10,7 @@ import time
 from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, Self, TypeVar, final
 
 from tactsim.deadline import check_time, time_limit
@@ -87,7 +87,7 @@ class Runnable(CaseKind):
         return None
 
     def doubts(self) -> list[str]:
-        """What looks wrong in the case, such as a unit: shown on a terminal before the run, and a warning of the result."""
+        """What looks wrong in the case, such as a unit: shown on a terminal before the run, and a warning of every result."""
         return []
 
     def vary(self, places: Mapping[str, Any]) -> Variation:
@@ -151,8 +151,7 @@ class Runnable(CaseKind):
         InputError
             As `unloaded`.
         """
-        result = _result(self, self.unloaded(), (Status.INTERRUPTED, "at rest; nothing is computed"), {})
-        return replace(result, warnings=(*self.doubts(), *result.warnings))
+        return _result(self, self.unloaded(), (Status.INTERRUPTED, "at rest; nothing is computed"), {})
 
     @final
     def run(self, progress: Progress | Literal["bar"] | None = "bar", *, time_limit: float | str | None = None) -> Result:
@@ -230,7 +229,7 @@ def _result(experiment: Runnable, findings: Findings, early: tuple[Status, str] 
         reason=reason,
         quantities=findings.quantities,
         assumptions=tuple(findings.assumptions),
-        warnings=tuple(findings.warnings),
+        warnings=(*experiment.doubts(), *findings.warnings),
         timing=dict(timing),
         steps=tuple(findings.steps),
         units=dict(experiment.history_units if findings.units is None else findings.units),

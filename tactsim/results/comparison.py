@@ -90,7 +90,8 @@ def compared(results: Mapping[str, Result], unit_of: UnitOf, name_of: NameOf = l
 def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf, name_of: NameOf) -> dict[str, tuple[str, ...]]:
     """Values of the cases, by key and unit, that are not the same in all results; empty where a case has no such key.
 
-    A key that has another unit in a case of another kind, as that of a force and of a displacement, has a row for each.
+    A key that has another unit in a case of another kind, as that of a force and of a displacement, has a row for each. One with
+    the name of a quantity, such as ``displacement``, is ``experiment.displacement``, as it is elsewhere.
     """
     experiments = [result.provenance.get("case", {}).get("experiment", {}) for result in results.values()]
     cases = [dict(_leaves(experiment, (), name_of)) for experiment in experiments]
@@ -101,7 +102,9 @@ def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf, name_of: N
             units = [unit_of(one, path) if path in case else None for one, case in zip(experiments, cases, strict=True)]
             for unit in dict.fromkeys(unit for unit in units if unit is not None):
                 of_unit = [value if one == unit else None for value, one in zip(values, units, strict=True)]
-                differing |= dict([_in_unit(".".join(map(str, path)), of_unit, unit)])
+                name = ".".join(map(str, path))
+                twice = any(name in result.quantities for result in results.values())
+                differing |= dict([_in_unit(f"experiment.{name}" if twice else name, of_unit, unit)])
     return differing
 
 

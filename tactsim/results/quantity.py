@@ -89,7 +89,14 @@ class Quantity:
         return np.array(self.numbers, dtype=dtype)
 
     def __format__(self, form: str) -> str:
-        return f"{format(self.value, form)} {self.unit}".removesuffix(" 1") if form else str(self)
+        return f"{_formatted(self.value, form)} {self.unit}".removesuffix(" 1") if form else str(self)
 
     def __str__(self) -> str:
         return f"{self.value} {self.unit}".removesuffix(" 1")
+
+
+def _formatted(value: Any, form: str) -> str:
+    """A number, or each one of nested lists, None among them as NaN."""
+    if isinstance(value, list | tuple | np.ndarray):
+        return f"[{', '.join(_formatted(one, form) for one in value)}]"
+    return format(np.nan if value is None else value, form)

@@ -54,7 +54,7 @@ def _title(comparison: Comparison) -> list[str]:
     """In what the cases differ, or whose results are compared if that is not known or nothing, in lines."""
     groups: dict[str, list[str]] = {}
     for key in comparison.inputs:
-        plain = key.partition(" [")[0].split(".")
+        plain = key.partition(" [")[0].removeprefix("experiment.").split(".")
         groups[plain[0]] = _shared(groups.get(plain[0], plain), plain)
     if not groups:
         return [" and ".join(comparison.names) if len(comparison.names) == 2 else f"{len(comparison.names)} results of one case"]

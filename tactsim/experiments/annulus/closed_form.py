@@ -103,7 +103,7 @@ class ClosedForm(Experiment):
             {"kind": "sine", "amplitude": 0.2, "frequency": 1.0, "duration": 4.0},
         ]
         loading = ForceLoading.model_validate({"control": "force", "pieces": pieces})
-        return cls(material=named_material("atrial").material, loading=loading)
+        return cls(material=named_material("atrial_printed").material, loading=loading)
 
     def begin(self) -> Course:
         """Evaluate at the sampled times."""

@@ -75,7 +75,13 @@ class BoundaryValueProblem(BoundaryValueSetup, Experiment):
         return unloaded_problem(self)
 
     def doubts(self) -> list[str]:
-        """Whether nothing but rigid bodies holds the body against some motion."""
+        """A material without compiled form, and whether nothing but rigid bodies holds the body against some motion."""
+        from tactsim.fem.assembly.material_forms import interpreted_warnings
+
+        return [*interpreted_warnings({"material": self.material}), *self._arbitrary_motions()]
+
+    def _arbitrary_motions(self) -> list[str]:
+        """Motions that nothing but rigid bodies holds."""
         if not self.contacts:
             return []  # a body that is free then is refused
         parts = Parts.of(self.geometry, self.dimension)

@@ -40,8 +40,8 @@ VIEW = np.array([0.55, -0.75, 0.40])
 """Direction from a body in space to the eye."""
 RIGID_COLOUR, GRID = "#c8ccd2", 250
 """Of a rigid body, and the points per direction on which its outline is traced."""
-MOST_CURVES = 6
-"""Curves in the second panel."""
+COURSES = (".-", "s--", "^:", "d-.", "x-", "v--")
+"""Marks and lines of the curves in the second panel, which print in grey tells apart."""
 ALIKE = 5e-3
 """Curves of a largest magnitude of one that differ by less are drawn as one."""
 STRESSED, SPECK = 0.1, 0.15
@@ -210,7 +210,7 @@ def draw_course(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
         _write_numbers(axis, result, scene)
         return
     curves: list[tuple[Array, list[str]]] = []
-    for name in list(scene.asked)[:MOST_CURVES]:
+    for name in list(scene.asked)[: len(COURSES)]:
         values = np.asarray(result.history_values(name))
         most = float(np.abs(values).max())
         label, course = f"{name} / {format_quantity(most, scene.asked[name])}", values / (most or 1.0)
@@ -219,8 +219,8 @@ def draw_course(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
             alike[0].append(label)
         else:
             curves.append((course, [label]))
-    for course, labels in curves:
-        axis.plot(time, course, ".-", markersize=3, label="\n".join(labels))
+    for (course, labels), style in zip(curves, COURSES, strict=False):
+        axis.plot(time, course, style, markersize=3, label="\n".join(labels))
     positive = time[time > 0]
     if len(positive) and positive[-1] > LONGEST_LINEAR * positive[0]:
         axis.set_xscale("log")

@@ -13,7 +13,6 @@ from tactsim.experiments.boundary_value.posing import PosedProblem, posed
 from tactsim.experiments.boundary_value.probes import Probes
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
 from tactsim.experiments.boundary_value.setup import MOST_STEPS, BoundaryValueSetup
-from tactsim.fem.assembly.material_forms import interpreted_warnings
 from tactsim.fem.paths.time_steps import TimeControl
 from tactsim.interfaces.run import Course, Findings
 from tactsim.mechanics.models.loaded_body import LoadedBody
@@ -208,7 +207,6 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         together = zip(self.problem.contacts, self._touched, strict=True)
         return [
             *super().warnings(),
-            *interpreted_warnings({"material": self.problem.material}),
             *(
                 f"rigid body {number} ({one.body.kind} from the {one.side}) never touches the body at {one.face}, its force is "
                 "zero: do its displacement and side lead it there?"

@@ -17,7 +17,7 @@ from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, Simulated
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
-from tactsim.experiments.grasp.warnings import doubts, ragged, smaller_elements, suction, uneven
+from tactsim.experiments.grasp.warnings import ragged, smaller_elements, suction, uneven
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_model import GraspModel
@@ -164,14 +164,14 @@ class GraspRecord(ContactRecord[GraspModel]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """Warnings about readout, mesh, readings, overhang, volumes, sizes and materials."""
+        """Warnings about readout, mesh, readings and volumes."""
         readout, warnings = self.experiment.readout, []
         if readout is not None and self._read is not None:
             warnings = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
         if self._unread:
             warnings.append(self._unread)
         warnings += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
-        return [*warnings, *doubts(self.experiment), *super().warnings()]
+        return [*warnings, *super().warnings()]
 
     def _asymmetry(self) -> float | None:
         """How far the last forces are from their mirror images, None if the grasp is not its own."""

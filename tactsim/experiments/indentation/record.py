@@ -182,8 +182,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """Warnings about volumes, units, ellipticity, and of a history that leaves what it is meant for."""
-        warnings = [*super().warnings(), *self.setup.doubts()]
+        """Warnings about volumes and ellipticity, and of a history that leaves what it is meant for."""
+        warnings = super().warnings()
         if self._clock is not None:
             warnings += self._left_behind([step.values for step in self.steps])
         return warnings

@@ -19,6 +19,8 @@ from tactsim.units import format_quantity
 
 TITLE_SIZE = 10.5
 COLOURS = ("#1f4e79", "#b8540a", "#2e7d32", "#6a1b9a", "#b00020", "#00838f", "#795548")
+LINES, MARKS = ("-", "--", "-.", ":"), ("o", "s", "^", "D", "v")
+"""Of the curves, which print in grey tells apart."""
 CLOSED, OPEN = "#2e7d32", "#d5d8dc"
 FACE, HEIGHT, LEAN = 2.0, 5.6, np.tan(np.radians(20))
 """Drawn half width of the face and height in pitches; the picture of the probe is a scheme."""
@@ -82,12 +84,12 @@ def _rate(rate: float) -> str:
 
 
 def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest: float = 0.0) -> Figure:
-    size, words = (max(narrowest, 1.6 + 3.1 * len(panels)), 3.8), f"{title}; dots: read as each switch closed, at its height"
+    size, words = (max(narrowest, 1.6 + 3.1 * len(panels)), 3.8), f"{title}; marks: read as each switch closed, at its height"
     with result_figure(result, size, below=words, title_size=TITLE_SIZE) as figure:
         axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
         for axis, panel in zip(axes, panels, strict=True):
-            for colour, curve in zip(cycle(COLOURS), panel.curves, strict=False):
-                _draw_curve(axis, result, curve, colour)
+            for style, curve in zip(zip(cycle(COLOURS), cycle(LINES), cycle(MARKS), strict=False), panel.curves, strict=False):
+                _draw_curve(axis, result, curve, style)
             _finish(axis, result, panel.title)
     return figure
 
@@ -143,17 +145,18 @@ def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
     despined(axis)
 
 
-def _draw_curve(axis: Axes, result: Result, curve: Curve, colour: str) -> None:
+def _draw_curve(axis: Axes, result: Result, curve: Curve, style: tuple[str, str, str]) -> None:
+    colour, line, mark = style
     steps = curve.steps(result)
     depth, force = (np.array([values[name] for values in steps]) for name in ("depth", "force"))
     loading = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
-    axis.plot(1e3 * depth[loading], force[loading], color=colour, label=curve.name)
+    axis.plot(1e3 * depth[loading], force[loading], line, color=colour, label=curve.name)
     scene = result.scene_as(SwitchProbeScene)
     heights = 1e3 * np.array(scene.heights)
     for touch in scene.touches:
         if (touch.tissue, touch.rate) == (curve.tissue, curve.rate):
             at = [heights[closing.switch - 1] for closing in touch.closings]
-            axis.plot(at, [closing.force for closing in touch.closings], "o", color=colour, markersize=4)
+            axis.plot(at, [closing.force for closing in touch.closings], mark, color=colour, markersize=4)
 
 
 def _finish(axis: Axes, result: Result, title: str) -> None:

@@ -215,7 +215,7 @@ def _of_quantity(cls: type[FrozenModel], quantity: Any, name: str) -> type[Froze
         key: (tuple[quantity, ...], ...) for key, field in cls.model_fields.items() if field.annotation == tuple[Value, ...]
     }
     made = create_model(f"{name}{cls.__name__}", __base__=cls, **fields)
-    made.__doc__ = cls.__doc__
+    made.__doc__ = vars(cls)["__doc__"]
     return made
 
 

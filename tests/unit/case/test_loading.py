@@ -179,3 +179,13 @@ def test_a_mapping_is_a_case_and_refused_in_the_words_of_a_file(pretended: None)
         load_case(value, {"experiment.steps": "x"})
     with pytest.raises(CaseError, match=r"^override experiment.steps.0.x: experiment.steps is"):
         load_case(value, {"experiment.steps": 7, "experiment.steps.0.x": 1})
+
+
+def test_a_folder_of_the_name_of_a_shipped_case_is_no_case(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """``tactsim run annulus_icf --out annulus_icf`` could not be run twice."""
+    monkeypatch.chdir(tmp_path)
+    Path("annulus_icf").mkdir()
+    assert load_case("annulus_icf").experiment.kind == "indentation"
+    Path("my_results").mkdir()
+    with pytest.raises(StorageError, match="it is a folder"):
+        load_case("my_results")

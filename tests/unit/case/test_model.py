@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import inspect
 import json
+import pydoc
 import re
 from pathlib import Path
 
 import pytest
-from pretence import CASE_TEXT, Pretence
+from pretence import CASE_TEXT, Pretence, Soft, Specimen
 
+from tactsim import field_docstrings, refusals
 from tactsim.case import SCHEMA, Case, load_case
 from tactsim.errors import CaseError
+from tactsim.field_docstrings import docstrings_alone
 from tactsim.validation.table import Row
 
 
@@ -90,3 +93,28 @@ def test_the_signature_names_the_keys_of_a_file(pretended: None) -> None:
 
 def test_a_key_that_is_a_word_of_the_language_has_a_signature():
     assert "from_" in inspect.signature(Row).parameters
+
+
+def test_help_tells_fields_with_units_and_defaults() -> None:
+    """It showed ``radius: float = 0.02``, and no word of what that is."""
+    section = (
+        "Parameters\n----------\nradius : m, 20 mm by default\n    Outer radius.\nlayers\n    From the bottom up.\nhole : m\n"
+    )
+    assert section in inspect.getdoc(Specimen)
+    assert " |  radius : m, 20 mm by default\n |      Outer radius.\n" in pydoc.plain(pydoc.render_doc(Specimen))
+    assert inspect.getdoc(Soft).startswith(
+        "A material with one modulus.\n\nParameters\n----------\nmodulus : Pa\n    Shear modulus."
+    )
+    with docstrings_alone():
+        assert Specimen.__doc__ == "A stack of layers."
+
+
+def test_a_refusal_reads_no_docstrings_of_fields(case_file: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They take a third as long as all else of a refused grasp."""
+    monkeypatch.setattr(
+        field_docstrings, "_parameters_section", lambda model, fields: pytest.fail(f"read those of {model.__name__}")
+    )
+    refusals._schema_of.cache_clear()
+    case_file.write_text(CASE_TEXT.replace("radius", "radios"), encoding="utf-8")
+    with pytest.raises(CaseError, match="did you mean 'radius'"):
+        load_case(case_file)

@@ -132,3 +132,16 @@ def test_a_key_that_has_another_unit_in_another_kind_has_a_row_for_each() -> Non
         "to [mN]": ("200", "", ""),
         "to [mm]": ("", "1", "2"),
     }
+
+
+def test_a_key_with_the_name_of_a_quantity_has_another_head() -> None:
+    """Two rows were called ``displacement [mm]``: how far the body was to go, and how far it went."""
+    results = {}
+    for name, asked, reached in (("a", 8e-3, 2e-3), ("b", 4e-3, 1e-3)):
+        case = {"experiment": {"kind": "indentation", "displacement": asked, "recess": asked}}
+        went = {"displacement": Quantity(reached, "m", "displacement of the body")}
+        results[name] = Result("indentation", Status.CONVERGED, "", quantities=went, provenance={"case": case})
+    comparison = compared(results, lambda experiment, path: "m")
+    assert comparison.inputs == {"experiment.displacement [mm]": ("8", "4"), "recess [mm]": ("8", "4")}
+    assert [column.head for column in comparison.columns] == ["displacement [mm]"]
+    assert comparison_figure(results, comparison).get_suptitle() == "2 results that differ in displacement, recess"

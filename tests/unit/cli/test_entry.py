@@ -75,6 +75,8 @@ def test_the_package_is_the_command() -> None:
 def test_an_unknown_option_leads_to_the_help_of_its_command(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "a", "--sett", "x=1"]) == 2
     assert capsys.readouterr().err == "error: unrecognized arguments: --sett x=1\nsee: tactsim run --help\n"
+    assert main(["data", "export", "store", "--out", "x"]) == 2
+    assert capsys.readouterr().err == "error: unrecognized arguments: --out x\nsee: tactsim data export --help\n"
     assert main(["--sett"]) == 2
     assert capsys.readouterr().err.endswith("see: tactsim --help\n")
 

@@ -94,6 +94,16 @@ def test_what_was_accepted_before_an_early_end_is_kept(
     assert result.quantities["count"].value == 2
 
 
+@pytest.mark.parametrize("error", [None, OutOfTime("took longer than the 5 s that it was given"), KeyboardInterrupt()])
+def test_doubts_are_warnings_of_every_result(
+    made: Callable[..., Experiment], monkeypatch: pytest.MonkeyPatch, error: BaseException | None
+) -> None:
+    doubtful = made(after=error)
+    monkeypatch.setattr(type(doubtful), "doubts", lambda self: ["a block of 4 km"])
+    assert doubtful.run().warnings == ("a block of 4 km", "w")
+    assert returned_by(run_within_another(made())).warnings == ("a block of 4 km", "w")
+
+
 def test_an_interruption_by_whoever_watches_keeps_the_step(made: Callable[..., Experiment]) -> None:
     def stop(step: StepRecord) -> None:
         raise KeyboardInterrupt

@@ -7,6 +7,7 @@ import pytest
 from matplotlib.axes import Axes
 from skfem import MeshTri
 
+from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.experiments.boundary_value.figures import draw_body
 from tactsim.plotting.canvas import new_figure
 from tactsim.results import FieldFrame
@@ -44,3 +45,9 @@ def test_of_a_body_that_is_stressed_in_a_speck_this_part_is_shown() -> None:
     (picture,) = axis.collections
     low, high = picture.get_clim()
     assert 0 < low < high < 1e3
+
+
+def test_curves_are_told_apart_without_colour() -> None:
+    *_, course = (axis for axis in BoundaryValueProblem.example().run().plot("boundary_value_problem").axes if axis.get_legend())
+    curves = course.get_legend().get_lines()
+    assert len({(curve.get_linestyle(), curve.get_marker()) for curve in curves}) == len(curves) > 1

@@ -118,6 +118,12 @@ def test_a_printed_mean_rate_is_a_third():
     assert printed / corrected == pytest.approx(1 / 3, rel=0.02)
 
 
+def test_curves_are_told_apart_without_colour(three):
+    for axis in three.plot("force_over_depth").axes:
+        curves = axis.get_legend().get_lines()
+        assert len({curve.get_linestyle() for curve in curves}) == len(curves) == 3
+
+
 def test_figures(three):
     drawings = figures_for(three)
     assert list(drawings) == ["force_over_depth.png", "switch_panel.png", "tissues_by_rate.png"]
