@@ -17,7 +17,7 @@ REACH = 1.25
 LEAST = 4
 """Taxels that are needed for a verdict."""
 SURE = 0.999
-"""Probability with which readings that fit have a chi-square below the limit."""
+"""Probability with which readings that fit have both parts of their chi-square below the limits."""
 
 
 @dataclass(frozen=True)
@@ -27,25 +27,29 @@ class PlainParts:
     Attributes
     ----------
     taxels : number of taxels beside the inclusions
-    chi_square : of their change, with the errors of a reference of the same tissue
+    common : chi-square of what is common to their change, a multiple of the reference, with the errors of one of the same tissue
+    apart : chi-square of the rest, which differs from taxel to taxel
     factor : readings over reference that fits them best
     scaled_chi_square : that of what this factor leaves
     """
 
     taxels: int
-    chi_square: float
+    common: float
+    apart: float
     factor: float
     scaled_chi_square: float
 
     @property
-    def limit(self) -> float:
-        """Largest chi-square of readings that fit, with the probability `SURE`."""
-        return float(scipy.stats.chi2.ppf(SURE, self.taxels))
+    def limits(self) -> tuple[float, float]:
+        """Largest ``common`` and ``apart`` of readings that fit, together with the probability `SURE`."""
+        common, apart = scipy.stats.chi2.ppf(np.sqrt(SURE), [1, self.taxels - 1])
+        return float(common), float(apart)
 
     @property
     def fits(self) -> bool:
         """Whether the reference can be of this tissue."""
-        return self.chi_square <= self.limit
+        common, apart = self.limits
+        return self.common <= common and self.apart <= apart
 
     @property
     def fits_scaled(self) -> bool:
@@ -58,10 +62,12 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
 
     With the change d and the reference p of the n taxels whose centre is more than `REACH` pitches from every estimated centre,
 
-    .. math:: \chi^2 = d \cdot S^{-1} d, \qquad S = (2 \sigma^2 + e_b^2 \overline{p^2}) 1 + b^2 p p^T
+    .. math:: \chi^2 = d \cdot S^{-1} d = \frac{(p \cdot d)^2 / |p|^2}{w + b^2 |p|^2} +
+        \frac{|d|^2 - (p \cdot d)^2 / |p|^2}{w}, \qquad S = w 1 + b^2 p p^T, \quad w = 2 \sigma^2 + e_b^2 \overline{p^2}
 
-    which readings of the tissue of the reference bring above the limit once in a thousand times. A factor f of the reference
-    multiplies its errors too: what it leaves has the variance :math:`(1 + f^2) \sigma^2 + f^2 e_b^2 \overline{p^2}`.
+    whose two parts have one and n - 1 degrees of freedom. Each has a limit of its own, for in their sum the n taxels would hide
+    a factor; readings of the tissue of the reference bring either above its limit once in a thousand times. A factor f of the
+    reference multiplies its errors too: what it leaves has the variance :math:`(1 + f^2) \sigma^2 + f^2 e_b^2 \overline{p^2}`.
     """
     if readings.reference is None or readings.difference is None:
         return None
@@ -72,10 +78,10 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
         return None
     errors = ReferenceErrors(plain, readings.noise, TAXEL_ERROR * _rms(reference) / _rms(plain), SAME_TISSUE, 0.0)
     factor = 1 + float(plain @ change / (plain @ plain))
-    squares = float(change @ np.linalg.solve(errors.covariance(0 * change), change))
-    left = change - (factor - 1) * plain
-    white = factor**2 * errors.white(0 * change) + (1 - factor**2) * readings.noise**2
-    return PlainParts(len(plain), squares, factor, float(left @ left) / white)
+    along, left = (factor - 1) ** 2 * float(plain @ plain), change - (factor - 1) * plain
+    rest, same = float(left @ left), errors.white(0 * change)
+    scaled = factor**2 * same + (1 - factor**2) * readings.noise**2
+    return PlainParts(len(plain), along / (same + SAME_TISSUE**2 * float(plain @ plain)), rest / same, factor, rest / scaled)
 
 
 def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
@@ -84,8 +90,9 @@ def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
     if parts is None or parts.fits:
         return None
     words = (
-        f"the readings of the {parts.taxels} taxels away from the estimate do not fit the reference (chi-square "
-        f"{parts.chi_square:.3g}, of a reference of the same tissue at most {parts.limit:.3g})"
+        f"the readings of the {parts.taxels} taxels away from the estimate do not fit the reference (chi-square of their common "
+        f"factor {parts.common:.3g}, of a reference of the same tissue at most {parts.limits[0]:.3g}; of what it leaves "
+        f"{parts.apart:.3g}, at most {parts.limits[1]:.3g})"
     )
     if not parts.fits_scaled:
         return f"{words}, nor any multiple of it: other friction, closing or inclusions; do not trust the place"

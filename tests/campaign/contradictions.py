@@ -72,9 +72,10 @@ def _out_of_balance(values: dict[str, Any]) -> Iterator[str]:
 def _penetrated(values: dict[str, Any]) -> Iterator[str]:
     if values.get("penetration_force_error", 0.0) > FORCE_ERROR:
         yield f"penetration takes away {values['penetration_force_error']:.2%} of the force"
-    deepest, moved = values.get("max_penetration", 0.0), values.get("displacement", float("inf"))
-    if deepest > PENETRATION * abs(moved):
-        yield f"a penetration of {deepest:g} m at a displacement of {moved:g} m"
+    if "max_penetration" in values and "displacement" in values:  # a design has displacements, and no contact to penetrate
+        deepest, moved = values["max_penetration"], values["displacement"]
+        if deepest > PENETRATION * abs(moved):
+            yield f"a penetration of {deepest:g} m at a displacement of {moved:g} m"
 
 
 def _cut_short(values: dict[str, Any], reason: str, experiment: dict[str, Any]) -> Iterator[str]:

@@ -70,6 +70,7 @@ class Running:
         if not child and seconds <= limit:
             return None
         if child:
+            self._child = 0  # its number may soon be that of another process
             outcome, reason = judged(os.waitstatus_to_exitcode(status), self.place, self._experiment)
         else:
             used = self.kill()
@@ -79,7 +80,9 @@ class Running:
         return Ended(trial.kind, trial.seed, trial.number, outcome, reason, round(seconds, 2), processor, code_identity())
 
     def kill(self):
-        """Ends the child; what it used."""
+        """Ends the child if it runs still; what it used."""
+        if not self._child:
+            return None
         os.kill(self._child, signal.SIGKILL)
         return os.wait4(self._child, 0)[2]
 

@@ -12,7 +12,7 @@ from campaign.contradictions import contradictions
 from campaign.random_cases import all_kinds, random_case
 from campaign.record import as_line, first_runs, last_runs, read_record
 from campaign.report import page
-from campaign.trials import PATIENCE, Ended, Trial, judged, tried
+from campaign.trials import PATIENCE, Ended, Running, Trial, judged, tried
 
 from tactsim.case import load_case
 from tactsim.case.writing import yaml_text
@@ -149,6 +149,22 @@ def test_a_trial_runs_the_command_and_keeps_its_case(tmp_path: Path) -> None:
     ended = tried(Trial("film_test", 1, 0, 60.0), tmp_path)
     assert (ended.outcome, ended.number) == ("converged", 0)
     assert (tmp_path / "film_test_0" / "case.yaml").is_file()
+
+
+def test_a_design_with_a_displacement_for_each_of_its_variants_is_judged(tmp_path: Path) -> None:
+    assert tried(Trial("annulus_design", 4021, 0, 60.0), tmp_path).outcome == "converged"
+
+
+def test_a_trial_whose_judge_fails_kills_no_other_process(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("campaign.trials.judged", lambda *_: 1 / 0)
+    running = Running(Trial("film_test", 1, 0, 60.0), tmp_path)
+    until = time.monotonic() + 60
+    with pytest.raises(ZeroDivisionError):
+        _ = [running.ended() for _ in iter(time.monotonic, until) if not time.sleep(0.02)]
+    killed: list[int] = []
+    monkeypatch.setattr("campaign.trials.os.kill", lambda child, _: killed.append(child))
+    running.kill()
+    assert not killed
 
 
 def ended(number: int, outcome: str, kind: str = "grasp", program: str = "a") -> Ended:

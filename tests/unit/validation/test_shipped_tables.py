@@ -10,6 +10,7 @@ from wrong_rows import left, unmoved
 
 from tactsim.case import load_case
 from tactsim.validation import load_tables
+from tactsim.validation.endings import Confirmed, Contradicted
 from tactsim.validation.execution import simulated
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
@@ -62,6 +63,20 @@ def test_every_shipped_table_is_counted_and_its_cases_are_valid() -> None:
         for study in table.studies:
             cases = [load_case(SHIPPED / study.case, study.overrides(run)) for run in study.runs]
             assert len({case.case_id for case in cases}) == len(study.runs)
+
+
+def test_a_step_towards_a_jaw_is_confirmed_where_the_force_rises_there_and_falls_at_the_other() -> None:
+    """Section 6.6: what comes nearer to a surface raises the pressure there "as opposed to the other"."""
+    steps = [
+        row
+        for row in load_tables(SHIPPED, ["section_6_6"]).tables["section_6_6"].rows
+        if isinstance(row.ends, Confirmed | Contradicted) and str(getattr(row.evaluate, "change", "")).endswith("along")
+    ]
+    assert len(steps) >= 10
+    for row in steps:
+        as_claimed = "above" if row.evaluate.side == "upper" else "below"
+        opposite = {"above": "below", "below": "above"}[as_claimed]
+        assert row.ends.limit.split()[0] == (as_claimed if isinstance(row.ends, Confirmed) else opposite), row.id
 
 
 def test_all_221_numbers_have_a_row_and_all_29_errata_words() -> None:
