@@ -18,7 +18,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.cli import main
-from tactsim.dataset.ranking.measures import Outcome, measures, outcome, share
+from tactsim.dataset.ranking.measures import JudgedEstimate, measures, outcome, share
 from tactsim.dataset.ranking.samples import JudgedSamples, Truth, judged_samples
 from tactsim.dataset.use.loading import load
 from tactsim.experiments.localization.response_store import stored_response
@@ -108,7 +108,7 @@ def run(order: Sequence[str]) -> None:
         raise SystemExit(f"tactsim {' '.join(order)} failed")
 
 
-def estimated(estimator: Estimator, readings: Readings, truth: Truth) -> tuple[Outcome, dict[str, Any]]:
+def estimated(estimator: Estimator, readings: Readings, truth: Truth) -> tuple[JudgedEstimate, dict[str, Any]]:
     """One estimate against the truth, and what is kept of it."""
     estimate = estimator.estimate(readings)
     parts = plain_parts(readings, estimate)
