@@ -55,11 +55,8 @@ class TaxelLayout(FrozenModel):
     def borders(self, along: str) -> Array:
         """Lower and upper border in m of every column (``along`` "x") or row ("y"), from the middle of the jaw, shape (n, 2)."""
         count = self.columns if along == "x" else self.rows
-        if self.size == self.pitch:  # neighbours share a border, to the last bit
-            edges = self.pitch * (np.arange(count + 1) - count / 2)
-            return np.stack([edges[:-1], edges[1:]], axis=1)
-        centres = self.pitch * (np.arange(count) - (count - 1) / 2)
-        return centres[:, None] + np.array([-0.5, 0.5]) * self.size
+        edges, half_gap = self.pitch * (np.arange(count + 1) - count / 2), (self.pitch - self.size) / 2
+        return np.stack([edges[:-1] + half_gap, edges[1:] - half_gap], axis=1)  # those that touch share it to the last bit
 
     def extent(self) -> tuple[float, float]:
         """Width along x and depth along y of the whole matrix in m."""
