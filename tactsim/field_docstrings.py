@@ -35,6 +35,11 @@ def with_fields(text: str, model: type[BaseModel], fields: dict[str, FieldInfo])
     return text if _ALONE.get() or not fields else f"{inspect.cleandoc(text)}\n\n{_parameters_section(model, fields)}"
 
 
+def summary(cls: type) -> str:
+    """The first line of a class's own docstring, for which its fields are not read; empty without one."""
+    return (vars(cls)["__doc__"] or "").partition("\n")[0].strip()
+
+
 def _parameters_section(model: type[BaseModel], fields: dict[str, FieldInfo]) -> str:
     """A section of a docstring: every field by its key, its unit in Python, its default, and what its docstring says."""
     described = field_descriptions(model)

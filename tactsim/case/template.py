@@ -7,7 +7,7 @@ from typing import Any
 
 from tactsim.case.model import SCHEMA, experiment_class
 from tactsim.case.writing import LONGEST_LINE, case_document, yaml_text
-from tactsim.field_docstrings import field_descriptions
+from tactsim.field_docstrings import field_descriptions, summary
 from tactsim.materials.library import LIBRARY
 
 MATERIALS = " Names of materials: tactsim list materials."
@@ -29,11 +29,10 @@ def template(kind: str) -> str:
     example = cls.example()
     given = case_document(example)["experiment"]
     every = case_document(example, complete=True)["experiment"]
-    about = (cls.__doc__ or "").partition("\n")[0].strip()
     lines = [
         "# yaml-language-server: $schema=case.schema.json",
         "# An editor completes the keys once that schema lies beside this file: tactsim schema --out case.schema.json",
-        *_comment(about, ""),
+        *_comment(summary(cls), ""),
         f"schema: {SCHEMA}",
         f"title: {_title(kind)}",
         "experiment:",

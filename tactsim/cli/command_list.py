@@ -63,11 +63,10 @@ def _materials() -> Lines:
 
 def _classes(point: str) -> Callable[[], Lines]:
     def lines() -> Lines:
-        from tactsim.field_docstrings import docstrings_alone
+        from tactsim.field_docstrings import summary
         from tactsim.interfaces.points import kinds
 
-        with docstrings_alone():
-            return [(kind, (cls.__doc__ or "").partition("\n")[0]) for kind, cls in kinds(point).items()]
+        return ((kind, summary(cls)) for kind, cls in kinds(point).items())
 
     return lines
 
