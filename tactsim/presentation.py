@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tactsim.case.model import Case
 from tactsim.errors import InputError, UnknownName
+from tactsim.interfaces.drawing import begin_all
 from tactsim.outside.text import one_line
 from tactsim.plotting import figures_for
 from tactsim.plotting.canvas import Figures, encoded, picture
@@ -51,6 +52,7 @@ def figures(result: Result, name: str | None = None) -> dict[str, Figure] | Figu
     """
     drawings: dict[str, Any] = {Path(file).stem: draw for file, draw in figures_for(result).items()}
     if name is None:
+        begin_all(drawings.values())
         return Figures({stem: draw.figure() for stem, draw in drawings.items()})
     if name not in drawings:
         raise UnknownName("figure", name, drawings)

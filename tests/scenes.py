@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+import numpy as np
 from matplotlib.text import Text
 
+from tactsim.array import Array
 from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
+from tactsim.plotting.off_screen import Camera, Surface
 from tactsim.results import Result, SolverReport, Status
 
 BORDER = 2
@@ -43,6 +46,17 @@ def grasp_scene(
         mesh=MESH,
         control="displacement",
     )
+
+
+@dataclass(frozen=True)
+class Unrendered:
+    """A rendering that renders nothing: white pictures."""
+
+    surfaces: Sequence[Surface]
+    cameras: Sequence[Camera]
+
+    def pictures(self) -> list[Array]:
+        return [np.full((*camera.pixels[::-1], 3), 255, np.uint8) for camera in self.cameras]
 
 
 def unmarked_figures(result: Result) -> list[str]:

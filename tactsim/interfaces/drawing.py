@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Callable
-from typing import Any, Protocol
+from collections.abc import Callable, Iterable
+from typing import Any, Protocol, runtime_checkable
 
 
 class Drawing(Protocol):
@@ -16,6 +16,21 @@ class Drawing(Protocol):
 
     def __call__(self, form: str = "png") -> bytes:
         """It as a file of this form, ``png``, ``svg`` or ``pdf``."""
+
+
+@runtime_checkable
+class BegunDrawing(Drawing, Protocol):
+    """One of which a part, such as a rendering, may run in a process of its own while others are drawn."""
+
+    def begin(self) -> None:
+        """Starts that part; what fails is told when the figure is drawn."""
+
+
+def begin_all(drawings: Iterable[object]) -> None:
+    """Begins those of several drawings that can be: before the first of them is drawn."""
+    for drawing in drawings:
+        if isinstance(drawing, BegunDrawing):
+            drawing.begin()
 
 
 def png_source(content: bytes) -> str:

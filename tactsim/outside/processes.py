@@ -56,6 +56,42 @@ class Ended:
         return "MemoryError" in self.error_output or "bad_alloc" in self.error_output or "allocate memory" in self.error_output
 
 
+class Child:
+    """A module of tactsim that runs as a separate program, for which this process waits later."""
+
+    def __init__(
+        self,
+        module: str,
+        arguments: Sequence[str],
+        *,
+        memory: int | None = None,
+        environment: Mapping[str, str] | None = None,
+    ):
+        self._words = tempfile.TemporaryFile()  # noqa: SIM115  it lives as long as the process
+        streams = {"stdin": subprocess.DEVNULL, "stdout": self._words, "stderr": self._words}
+        try:
+            self._process = _started(module, arguments, memory, environment, **streams)
+        except BaseException:
+            self._words.close()
+            raise
+
+    def wait(self, time_limit: float) -> Ended:
+        """Waits for its end, at most ``time_limit`` in s from now; it is killed then."""
+        try:
+            self._process.wait(time_limit)
+        except subprocess.TimeoutExpired:
+            return Ended(UNSET, _last_words(self._words), out_of_time=True)
+        else:
+            return Ended(self._process.returncode, _last_words(self._words))
+        finally:
+            self.stop()
+
+    def stop(self) -> None:
+        """Ends it at once, if it still runs."""
+        _killed(self._process)
+        self._words.close()
+
+
 def run_child(
     module: str,
     arguments: Sequence[str],
@@ -73,15 +109,7 @@ def run_child(
     memory : bytes that the child may write to; by default what the machine has
     environment : variables that the child has beside those of this process
     """
-    with tempfile.TemporaryFile() as words:
-        child = _started(module, arguments, memory, environment, stdin=subprocess.DEVNULL, stdout=words, stderr=words)
-        try:
-            child.wait(time_limit)
-        except subprocess.TimeoutExpired:
-            return Ended(UNSET, _last_words(words), out_of_time=True)
-        finally:
-            _killed(child)
-        return Ended(child.returncode, _last_words(words))
+    return Child(module, arguments, memory=memory, environment=environment).wait(time_limit)
 
 
 class Worker:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import re
 import tempfile
+import weakref
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
@@ -18,7 +19,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.errors import TactsimError
 from tactsim.outside.arrays import read_arrays
-from tactsim.outside.processes import run_child
+from tactsim.outside.processes import Child
 
 PATIENCE = 120.0
 """Time in s after which a renderer that does not answer is given up."""
@@ -62,24 +63,46 @@ class Camera:
         return np.array(self.pixels) / 2 + flat * self.pixels[1] / (2 * self.half_height)
 
 
-def pictures(surfaces: Sequence[Surface], cameras: Sequence[Camera]) -> list[Array]:
-    """A scene as each camera sees it, (height, width, 3) from 0 to 255, all from one process.
+class Rendering:
+    """A scene as each camera sees it, rendered by a process of its own while this one does other work.
 
-    Raises
-    ------
-    TactsimError
-        If this machine cannot render; the message says why.
+    Parameters
+    ----------
+    surfaces : what the scene is made of
+    cameras : one for each picture
     """
-    with tempfile.TemporaryDirectory() as folder:
-        scene, drawn = Path(folder) / "scene.npz", Path(folder) / "pictures.npz"
+
+    def __init__(self, surfaces: Sequence[Surface], cameras: Sequence[Camera]):
+        self.cameras = tuple(cameras)
+        self._folder = tempfile.TemporaryDirectory()
+        scene, self._drawn = Path(self._folder.name) / "scene.npz", Path(self._folder.name) / "pictures.npz"
         _save(scene, surfaces, cameras)
-        done = run_child(MODULE, [str(scene), str(drawn)], time_limit=PATIENCE, environment=ONE_THREAD)
-        if done.out_of_time:
-            raise TactsimError(f"the renderer did not answer in {PATIENCE:g} s")
-        if done.code or not drawn.is_file():
-            raise TactsimError(f"VTK cannot render here: {_cause(done.error_output, done.code)} ({REMEDY})")
-        images = read_arrays(drawn.read_bytes(), "the pictures")
-        return [images[str(number)] for number in range(len(cameras))]
+        self._child = Child(MODULE, [str(scene), str(self._drawn)], environment=ONE_THREAD)
+        self._close = weakref.finalize(self, _closed, self._child, self._folder)
+
+    def pictures(self) -> list[Array]:
+        """The pictures (height, width, 3) from 0 to 255, waited for; once.
+
+        Raises
+        ------
+        TactsimError
+            If this machine cannot render; the message says why.
+        """
+        try:
+            done = self._child.wait(PATIENCE)
+            if done.out_of_time:
+                raise TactsimError(f"the renderer did not answer in {PATIENCE:g} s")
+            if done.code or not self._drawn.is_file():
+                raise TactsimError(f"VTK cannot render here: {_cause(done.error_output, done.code)} ({REMEDY})")
+            images = read_arrays(self._drawn.read_bytes(), "the pictures")
+            return [images[str(number)] for number in range(len(self.cameras))]
+        finally:
+            self._close()
+
+
+def _closed(child: Child, folder: tempfile.TemporaryDirectory[str]) -> None:
+    child.stop()
+    folder.cleanup()
 
 
 def _save(path: Path, surfaces: Sequence[Surface], cameras: Sequence[Camera]) -> None:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from tactsim.errors import InputError, TactsimError
+from tactsim.interfaces.drawing import begin_all
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
 from tactsim.results import Result
@@ -48,7 +49,9 @@ def drawn_figures(
     warnings: list[str] = []
     with collected_warnings() as caught:
         try:
-            for name, draw in drawings().items():
+            chosen = drawings()
+            begin_all(chosen.values())
+            for name, draw in chosen.items():
                 try:
                     drawn[str(Path(name).with_suffix(f".{form}"))] = draw() if form == "png" else draw(form)
                 except TactsimError as error:

@@ -13,12 +13,13 @@ from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, loaded_taxels
 from tactsim.experiments.grasp.figures.section import draw_section
 from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, voltages_figure
-from tactsim.experiments.grasp.figures.view import VIEW, view_figure
+from tactsim.experiments.grasp.figures.view import VIEW, view_figure, view_rendering
 from tactsim.experiments.grasp.figures.viewed import viewed
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.grasp.scene import SimulatedGrasp
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import SKETCH, Plot, result_figure
+from tactsim.plotting.rendered_plot import RenderedPlot
 from tactsim.results import Result, Status
 
 PANEL_HEIGHT = 2.1
@@ -47,7 +48,7 @@ class GraspFigures(ResultFigures):
         if has_taxels(result, VOLTAGE, history=True):
             drawings[VOLTAGES] = Plot(lambda: voltages_figure(result))
         if result.frames:
-            drawings[VIEW] = Plot(lambda: view_figure(result))
+            drawings[VIEW] = RenderedPlot(lambda: view_rendering(result), lambda rendering: view_figure(result, rendering))
         return drawings
 
 

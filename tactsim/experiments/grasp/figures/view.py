@@ -17,7 +17,7 @@ from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, LoadedTaxels, 
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.plotting.canvas import PRESSURE_COLOURS, result_figure
-from tactsim.plotting.off_screen import Camera, Surface, pictures
+from tactsim.plotting.off_screen import Camera, Rendering, Surface
 from tactsim.plotting.plane_cut import OUTER, QUARTERS, deformed, interfaces
 from tactsim.results import FieldFrame, Result
 from tactsim.units import format_quantity
@@ -42,12 +42,15 @@ VIEW = "grasp_view.png"
 """File name of the view."""
 
 
-def view_figure(result: Result) -> Figure:
+def view_rendering(result: Result) -> Rendering:
+    """The scene from above and from below, which begins to be rendered."""
+    surfaces = scene(result.frames[-1], loaded_taxels(result))
+    return Rendering(surfaces, [framing_camera(surfaces, direction) for direction in (FROM_ABOVE, FROM_BELOW)])
+
+
+def view_figure(result: Result, rendering: Rendering) -> Figure:
     """The rendered scene from above and from below, with names, axes and the scale of the bars."""
-    grasp, frame = loaded_taxels(result), result.frames[-1]
-    surfaces = scene(frame, grasp)
-    cameras = [framing_camera(surfaces, direction) for direction in (FROM_ABOVE, FROM_BELOW)]
-    images = pictures(surfaces, cameras)
+    grasp, cameras, images = loaded_taxels(result), rendering.cameras, rendering.pictures()
     with result_figure(result, (12.0, 5.8), TITLE, remark=ending(result), where=WHERE) as figure:
         figure.set_layout_engine("constrained", h_pad=0.12)
         axes = figure.subplots(1, 2)

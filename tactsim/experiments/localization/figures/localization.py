@@ -7,9 +7,10 @@ from typing import Literal
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, has_taxels
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.localization.figures.parts import localized
-from tactsim.experiments.localization.figures.space import SPACE, space_figure
+from tactsim.experiments.localization.figures.space import SPACE, space_figure, space_view
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import Plot
+from tactsim.plotting.rendered_plot import RenderedPlot
 from tactsim.results import Result
 
 
@@ -23,5 +24,5 @@ class LocalizationFigures(ResultFigures):
         if not has_taxels(result, TAXEL_FORCE):
             return {}
         drawings: dict[str, Drawing] = {VIEWS: Plot(lambda: views_figure(result, localized(result)))}
-        drawings[SPACE] = Plot(lambda: space_figure(result))
+        drawings[SPACE] = RenderedPlot(lambda: space_view(result), lambda view: space_figure(result, view))
         return drawings

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -27,7 +27,7 @@ from tactsim.experiments.localization.figures.parts import localized
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import result_figure
-from tactsim.plotting.off_screen import Surface, pictures
+from tactsim.plotting.off_screen import Rendering, Surface
 from tactsim.results import Result
 
 SPACE = "space.png"
@@ -41,7 +41,17 @@ UNKNOWN_RADIUS = 0.06
 """Radius over the block's height with which the place of an inclusion of unknown size is marked."""
 
 
-def space_figure(result: Result) -> Figure:
+@dataclass(frozen=True, eq=False)
+class SpaceView:
+    """What is shown, the jaws around it, the titles of the pictures, and their rendering, which has begun."""
+
+    shown: ViewedGrasp
+    grasp: LoadedTaxels
+    titles: tuple[str, ...]
+    rendering: Rendering
+
+
+def space_view(result: Result) -> SpaceView:
     """True beside estimated inclusions, in the undeformed tissue, seen from the front, right and above."""
     shown = localized(result)
     grasp = _grasp(shown)
@@ -49,16 +59,23 @@ def space_figure(result: Result) -> Figure:
     scenes = {"true inclusions": list(_true(shown)), "estimated inclusions": list(_estimated(shown))}
     camera = framing_camera(outside, FROM_ABOVE)
     inclusions = [replace(body, seen_by=(k,)) for k, bodies in enumerate(scenes.values()) for body in bodies]
-    images = pictures([*outside, *inclusions], [camera] * len(scenes))
+    titles = tuple(words if inside else f"{words}: none" for words, inside in scenes.items())
+    return SpaceView(shown, grasp, titles, Rendering([*outside, *inclusions], [camera] * len(scenes)))
+
+
+def space_figure(result: Result, view: SpaceView) -> Figure:
+    """The pictures beside each other, with the axes and the scale of the bars."""
+    rendering = view.rendering
+    images = rendering.pictures()
     with result_figure(result, (12.0, 5.9), "Localization", remark=result.reason.partition(";")[0]) as figure:
         figure.set_layout_engine("constrained", h_pad=0.08)
         axes = figure.subplots(1, 2)
-        for axis, image, (words, inside) in zip(axes, images, scenes.items(), strict=True):
+        for axis, camera, image, title in zip(axes, rendering.cameras, images, view.titles, strict=True):
             axis.imshow(image, interpolation="bilinear")
             axis.set_axis_off()
-            axis.set_title(words if inside else f"{words}: none", loc="left")
-            annotate(axis, grasp, camera)
-        _scale(figure, axes, grasp, shown)
+            axis.set_title(title, loc="left")
+            annotate(axis, view.grasp, camera)
+        _scale(figure, axes, view.grasp, view.shown)
     return figure
 
 

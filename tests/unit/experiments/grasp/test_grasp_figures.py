@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.text import Text
-from scenes import grasp_scene, unmarked_figures
+from scenes import Unrendered, grasp_scene, unmarked_figures
 
 from tactsim.cli.figures.result_figures import rendered_figures
 from tactsim.errors import TactsimError
@@ -18,6 +19,7 @@ from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.section import CuttingPlane, cutting_plane
 from tactsim.experiments.grasp.figures.viewed import outline
 from tactsim.experiments.grasp.scene import SimulatedGrasp
+from tactsim.interfaces.drawing import BegunDrawing
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.inclusions.sphere import Sphere
@@ -242,7 +244,7 @@ def test_single_step_without_fields_leaves_the_maps():
 
 def test_failed_run_is_marked(frame, monkeypatch):
     assert "FAILED; the last accepted step is shown: because" in text_of(maps_figure(made_up(status=Status.FAILED)))
-    monkeypatch.setattr(grasp_view, "pictures", lambda surfaces, cameras: [np.zeros((2, 2, 3))] * len(cameras))
+    monkeypatch.setattr(grasp_view, "Rendering", Unrendered)
     assert unmarked_figures(made_up(frame=frame)) == []
 
 
@@ -256,6 +258,7 @@ def test_maps_come_first_and_the_view_last(frame):
         "grasp_view.png",
     ]
     assert list(drawings) == names
+    assert [name for name, draw in drawings.items() if isinstance(draw, BegunDrawing)] == [grasp_view.VIEW]
     assert drawings["grasp_history.png"]().startswith(b"\x89PNG")
 
 
@@ -269,7 +272,7 @@ def test_view_shows_the_scene_where_the_camera_puts_it():
     camera = off_screen.Camera((0.0, 0.0, 0.0), (0.0, -1.0, 0.0), 2.0, (200, 100))
     surface = off_screen.Surface(corners, np.array([[0, 1, 2]]), np.array([[1.0, 0.0, 0.0]]))
     try:
-        (content,) = off_screen.pictures([surface], [camera])
+        (content,) = off_screen.Rendering([surface], [camera]).pictures()
     except TactsimError as error:
         pytest.skip(str(error))
     red = content[:, :, 1] < 128
@@ -278,26 +281,44 @@ def test_view_shows_the_scene_where_the_camera_puts_it():
     np.testing.assert_allclose([x.min(), x.max(), y.min(), y.max()], [75, 125, 25, 75], atol=1.5)
 
 
+class Unable:
+    """A renderer that ends at once, without a picture."""
+
+    def __init__(self, *arguments, **options):
+        self.stopped = False
+
+    def wait(self, time_limit):
+        return Ended(-6, "WARN| libOSMesa not found.")
+
+    def stop(self):
+        self.stopped = True
+
+
 def test_machine_that_cannot_render_says_why(monkeypatch, frame):
-    monkeypatch.setattr(off_screen, "run_child", lambda *arguments, **options: Ended(-6, "WARN| libOSMesa not found."))
+    monkeypatch.setattr(off_screen, "Child", Unable)
     drawn, warnings = rendered_figures(made_up(frame=frame))
     assert grasp_view.VIEW not in drawn
     assert "grasp_maps.png" in drawn
     assert re.search(r"grasp_view\.png is left out.*libOSMesa not found", " ".join(warnings))
 
 
+def test_a_rendering_that_nobody_waits_for_leaves_nothing(monkeypatch):
+    begun = []
+    monkeypatch.setattr(off_screen, "Child", lambda *arguments, **options: begun.append((Unable(), arguments)) or begun[0][0])
+    off_screen.Rendering([], [])
+    ((child, (_, (scene, _))),) = begun
+    assert child.stopped
+    assert not Path(scene).parent.exists()
+
+
 def test_view_names_what_it_shows(monkeypatch, frame):
-    seen = []
-
-    def drawn(surfaces, cameras):
-        seen.append((surfaces, cameras))
-        return [np.full((4, 4, 3), 255, np.uint8)] * len(cameras)
-
-    monkeypatch.setattr(grasp_view, "pictures", drawn)
-    words = text_of(grasp_view.view_figure(made_up(frame=frame)))
+    monkeypatch.setattr(grasp_view, "Rendering", Unrendered)
+    result = made_up(frame=frame)
+    rendering = grasp_view.view_rendering(result)
+    words = text_of(grasp_view.view_figure(result, rendering))
     for expected in ("upper jaw", "lower jaw", "sphere 1", "each jaw closed by 1 mm", "kPa"):
         assert expected in words
-    (surfaces, cameras) = seen[0]
+    surfaces, cameras = rendering.surfaces, rendering.cameras
     for camera in cameras:
         places = camera.project(np.concatenate([surface.points for surface in surfaces]))
         assert (places > 0).all()

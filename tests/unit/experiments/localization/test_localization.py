@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
-from scenes import grasp_scene, unmarked_figures
+from scenes import Unrendered, grasp_scene, unmarked_figures
 
 from tactsim.case.loading import load_case
 from tactsim.errors import CaseError, InputError, StorageError
@@ -105,7 +105,7 @@ def test_the_views_show_the_true_and_the_estimated_place(folders, monkeypatch):
     within = 1e3 * np.array([SPHERE.center[0], SPHERE.center[2]])
     covered = np.hypot(first[None] - within[0], second[:, None] - within[1]) < 4.9
     assert (distance[covered] < 0).all()
-    monkeypatch.setattr(space, "pictures", lambda surfaces, cameras: [np.zeros((2, 2, 3))] * len(cameras))
+    monkeypatch.setattr(space, "Rendering", Unrendered)
     assert unmarked_figures(result) == []
     figure = views_figure(result, localized(result))
     titles = [axis.get_title(loc="left") for axis in figure.axes]
