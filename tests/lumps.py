@@ -71,10 +71,10 @@ def interface_nodes(mesh: QuadraticMesh, first: int, second: int) -> Array:
 
 def same_mirrored(mesh: QuadraticMesh, axis: int) -> bool:
     """Whether the nodes and the centres of the elements of a mesh of a block of `SIZE` are their own mirror image."""
-    same = True
     for points in (mesh.nodes, mesh.nodes[mesh.elements].mean(axis=1)):
         image = points.copy()
         image[:, axis] = SIZE[axis] - image[:, axis]
         places = [np.round(p * 1e9).astype(np.int64) for p in (points, image)]
-        same &= set(map(tuple, places[0])) == set(map(tuple, places[1]))
-    return same
+        if not np.array_equal(*(place[np.lexsort(place.T)] for place in places)):
+            return False
+    return True

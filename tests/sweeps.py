@@ -106,8 +106,8 @@ def assert_same(one: Path, other: Path) -> None:
         np.testing.assert_array_equal(values, second[name], err_msg=name)
 
 
-def main() -> None:
-    """``python sweeps.py FILE STORE``: for every line that it reads, a fresh process that goes on with a store, folding often.
+def main(file: str, store: str) -> None:
+    """For every line that it reads, a fresh process that goes on with the store of a sweep's file, folding often.
 
     Each reports its number and then whether it begins; the last line is the exit code of the last.
     """
@@ -121,7 +121,7 @@ def main() -> None:
 
     running.FOLD_SAMPLES, running.MOST_IN_TASK = 6, 2
     journal.sync = building.sync = store_writing.sync = lambda path: None  # a kill leaves what the system holds
-    sweep, place = load_sweep(sys.argv[1]), Path(sys.argv[2])
+    sweep, place = load_sweep(file), Path(store)
     layout_of(sweep)
     for _ in sys.stdin:
         child = os.fork()
@@ -132,7 +132,3 @@ def main() -> None:
             os._exit(0)
         sys.stdout.write(f"{os.waitstatus_to_exitcode(os.waitpid(child, 0)[1])}\n")
         sys.stdout.flush()
-
-
-if __name__ == "__main__":
-    main()

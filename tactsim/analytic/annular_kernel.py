@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cache, cached_property
 
 import numpy as np
 import scipy
@@ -125,6 +125,12 @@ def wave_quadrature(frequency: float) -> tuple[np.ndarray, np.ndarray]:
     """Points and weights on [0, LAST_WAVE] that resolve M and the product of two waves of ``frequency`` rad per unit."""
     panels = int(np.ceil(LAST_WAVE * max(1.0, frequency / 4)))
     edges = np.linspace(0, LAST_WAVE, panels + 1)
-    points, weights = np.polynomial.legendre.leggauss(PANEL_POINTS)
+    points, weights = _panel_quadrature()
     half = LAST_WAVE / panels / 2
     return (edges[:-1, None] + half * (points + 1)).ravel(), np.tile(half * weights, panels)
+
+
+@cache
+def _panel_quadrature() -> tuple[np.ndarray, np.ndarray]:
+    """Points and weights on [-1, 1]."""
+    return np.polynomial.legendre.leggauss(PANEL_POINTS)

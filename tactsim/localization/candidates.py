@@ -92,7 +92,8 @@ class Candidates:
             away = self.begins - self.begins[of]
             return np.einsum("...k,...k->...", away, away) < reach**2
         above = np.abs(self.begins[:, 2] - self.begins[of, 2])
-        return (_plan_distance(self.begins[:, :2], self.ends[:, :2], of) < reach) & (above < reach)
+        firsts, lasts = (np.ascontiguousarray(points[:, :2].T) for points in (self.begins, self.ends))
+        return (_plan_distance(firsts, lasts, of) < reach) & (above < reach)
 
 
 def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
@@ -233,25 +234,27 @@ def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array) -> sc
 
 
 def _plan_distance(firsts: Array, lasts: Array, one: int | Array) -> Array:
-    """Distance (n,) in m in plan of every segment from one of them, (m, n) from several (m, 1): 0 where they cross."""
-    begin, end = firsts[one], lasts[one]
+    """Distance (n,) in m in plan of every segment (2, n) from one of them, (m, n) from several (m, 1): 0 where they cross."""
+    begin, end = firsts[:, one], lasts[:, one]
     ends = [_from_segment(point, firsts, lasts) for point in (begin, end)]
     ends += [_from_segment(points, begin, end) for points in (firsts, lasts)]
     sides = [_side(begin, end, firsts) * _side(begin, end, lasts), _side(firsts, lasts, begin) * _side(firsts, lasts, end)]
-    return np.where((sides[0] < 0) & (sides[1] < 0), 0.0, np.min(ends, axis=0))
+    return np.where((sides[0] < 0) & (sides[1] < 0), 0.0, np.sqrt(np.min(ends, axis=0)))
 
 
 def _from_segment(points: Array, firsts: Array, lasts: Array) -> Array:
-    along = lasts - firsts
-    share = np.clip(_dot(points - firsts, along) / _dot(along, along), 0.0, 1.0)
-    away = points - firsts - share[..., None] * along
-    return np.sqrt(_dot(away, away))
-
-
-def _dot(first: Array, second: Array) -> Array:
-    return first[..., 0] * second[..., 0] + first[..., 1] * second[..., 1]
+    """Squared distance in m^2."""
+    (along_x, along_y), (x, y) = _between(firsts, lasts), _between(firsts, points)
+    share = np.clip((x * along_x + y * along_y) / (along_x * along_x + along_y * along_y), 0.0, 1.0)
+    x, y = x - share * along_x, y - share * along_y
+    return x * x + y * y
 
 
 def _side(firsts: Array, lasts: Array, points: Array) -> Array:
-    along, away = lasts - firsts, points - firsts
-    return along[..., 0] * away[..., 1] - along[..., 1] * away[..., 0]
+    (along_x, along_y), (x, y) = _between(firsts, lasts), _between(firsts, points)
+    return along_x * y - along_y * x
+
+
+def _between(firsts: Array, lasts: Array) -> tuple[Array, Array]:
+    """Both components of the way from the first points to the last."""
+    return lasts[0] - firsts[0], lasts[1] - firsts[1]

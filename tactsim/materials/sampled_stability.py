@@ -10,8 +10,8 @@ from tactsim.materials.homogeneous import diagonal
 
 DIRECTIONS = 100
 """Unit vectors on half a sphere, some 14 degrees apart: a loss of ellipticity in a narrower cone can be overlooked."""
-CHUNK = 2048
-"""Points judged at once."""
+CHUNK = 256
+"""Points judged at once: what is computed of them stays near the processor."""
 LOGARITHMIC = np.array([[1, -1, 0], [1, 1, -2]]) / np.sqrt([[2], [6]])
 """Two unit directions of logarithmic strain of constant volume."""
 

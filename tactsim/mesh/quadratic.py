@@ -58,13 +58,18 @@ class QuadraticMesh:
         facets = np.concatenate([self.elements[:, list(facet)] for facet in FACETS[self.dim]])
         owner = np.tile(np.arange(len(self.elements)), len(FACETS[self.dim]))
         keys = np.sort(facets[:, : self.dim], axis=1)
-        _, first, counts = np.unique(keys, axis=0, return_index=True, return_counts=True)
+        _, first, counts = np.unique(row_numbers(keys), return_index=True, return_counts=True)
         chosen = np.sort(first[counts == 1])
         return facets[chosen], owner[chosen]
 
     def moved(self, nodes: Array) -> QuadraticMesh:
         """The same mesh with other node coordinates."""
         return QuadraticMesh(nodes, self.elements, self.regions)
+
+
+def row_numbers(rows: Array) -> Array:
+    """A number (n,) for each row (n, k) of whole numbers from zero on, in the order of the rows: numbers are sorted faster."""
+    return np.ravel_multi_index(tuple(rows.T), (int(rows.max(initial=0)) + 1,) * rows.shape[1])
 
 
 def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = None) -> QuadraticMesh:
@@ -85,7 +90,7 @@ def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = Non
     used, simplices = np.unique(simplices, return_inverse=True)
     corners, simplices = corners[used], simplices.reshape(-1, dim + 1)
     edges = np.concatenate([np.sort(simplices[:, list(edge)], axis=1) for edge in EDGES[dim]])
-    unique, number = np.unique(edges, axis=0, return_inverse=True)
+    _, first, number = np.unique(row_numbers(edges), return_index=True, return_inverse=True)
     middles = len(corners) + number.reshape(len(EDGES[dim]), -1).T
     elements = np.hstack([simplices, middles]).astype(np.int64)
     sides = corners[simplices[:, 1:]] - corners[simplices[:, :1]]
@@ -95,5 +100,5 @@ def quadratic_mesh(corners: Array, simplices: Array, regions: Array | None = Non
         raise InputError(f"element {int(np.flatnonzero(flat)[0])} of the mesh is flat")
     mirrored = volume < 0
     elements[mirrored] = elements[mirrored][:, MIRROR[dim]]
-    nodes = np.vstack([corners, corners[unique].mean(axis=1)])
+    nodes = np.vstack([corners, corners[edges[first]].mean(axis=1)])
     return QuadraticMesh(nodes, elements, np.zeros(len(elements), np.int64) if regions is None else np.asarray(regions))

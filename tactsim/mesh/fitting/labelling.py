@@ -10,6 +10,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.interfaces.solid import FACES, Patch, Solid
 from tactsim.mesh.fitting.constrained import Constraints, block_patches
+from tactsim.mesh.quadratic import row_numbers
 
 OUTSIDE = -1
 """Label outside the block; the tissue is 0, inclusion k is k, and the space in a hollow inclusion k is -1 - k."""
@@ -119,10 +120,11 @@ def _misfit(triangles: Array, patches: Sequence[Patch]) -> Array:
 def _pairs(simplices: Array, labels: Array) -> tuple[Array, Array]:
     """Triangles (F, 3) and the labels (F, 2), ascending, of the tetrahedra on their sides; OUTSIDE where there is none."""
     faces = np.sort(np.concatenate([simplices[:, list(side)] for side in _SIDES]), axis=1)
-    triangles, number = np.unique(faces, axis=0, return_inverse=True)
+    _, first, number = np.unique(row_numbers(faces), return_index=True, return_inverse=True)
+    triangles = faces[first]
     owner = np.tile(labels, 4)
-    order = np.argsort(number.reshape(-1), kind="stable")
-    start = np.searchsorted(number.reshape(-1)[order], np.arange(len(triangles) + 1))
+    order = np.argsort(number, kind="stable")
+    start = np.searchsorted(number[order], np.arange(len(triangles) + 1))
     pairs = np.full((len(triangles), 2), OUTSIDE)
     pairs[:, 0] = owner[order[start[:-1]]]
     double = np.diff(start) > 1
@@ -133,9 +135,9 @@ def _pairs(simplices: Array, labels: Array) -> tuple[Array, Array]:
 def neighbours_of(simplices: Array) -> Array:
     """Numbers (E, 4) of the tetrahedra across the sides, -1 where there is none."""
     faces = np.sort(np.stack([simplices[:, list(side)] for side in _SIDES], axis=1), axis=2).reshape(-1, 3)
-    _, number = np.unique(faces, axis=0, return_inverse=True)
-    order = np.argsort(number.reshape(-1), kind="stable")
-    same = np.flatnonzero(np.diff(number.reshape(-1)[order]) == 0)
+    _, number = np.unique(row_numbers(faces), return_inverse=True)
+    order = np.argsort(number, kind="stable")
+    same = np.flatnonzero(np.diff(number[order]) == 0)
     neighbours = np.full(len(faces), -1)
     a, b = order[same], order[same + 1]
     neighbours[a], neighbours[b] = b // 4, a // 4

@@ -74,8 +74,7 @@ def _energy(corners: Array, simplices: Array, barrier: Array) -> tuple[float, Ar
     by_map = (2 * slope / (3 * h ** (2 / 3)))[:, None, None] * map_
     by_map -= (slope * shape * 2 / 3 / root)[:, None, None] * cofactor
     by_side = by_map @ TO_REGULAR.T
-    gradient = np.zeros_like(corners)
-    for k in range(3):
-        np.add.at(gradient, simplices[:, k + 1], by_side[:, :, k])
-        np.add.at(gradient, simplices[:, 0], -by_side[:, :, k])
+    ends = np.concatenate([simplices[:, corner] for k in range(3) for corner in (k + 1, 0)])
+    parts = np.concatenate([sign * by_side[:, :, k] for k in range(3) for sign in (1, -1)])
+    gradient = np.stack([np.bincount(ends, part, minlength=len(corners)) for part in parts.T], axis=1)
     return float((shape**POWER).sum()), gradient

@@ -92,5 +92,7 @@ class CentreLine:
             slope = ((on - points) * first).sum(axis=1)
             bend = (first**2).sum(axis=1) + ((on - points) * second).sum(axis=1)
             bend = np.where(bend > 0, bend, (first**2).sum(axis=1))
-            parameter = np.clip(parameter - slope / bend, left, right)
+            before, parameter = parameter, np.clip(parameter - slope / bend, left, right)
+            if np.array_equal(parameter, before):
+                break
         return parameter

@@ -83,16 +83,16 @@ class SweptSolid(Solid):
         """
         line, s = self.line, self.line.stations
         on, derivative, _ = line.derivatives(s)
-        speed, bend = np.linalg.norm(derivative, axis=1), line.curvature(s)
-        first, second = line.frames(s)
+        speed = np.linalg.norm(derivative, axis=1)
+        on, bend, first, second = (np.ascontiguousarray(part.T) for part in (on, line.curvature(s), *line.frames(s)))
         nodes, weights = np.polynomial.legendre.leggauss(RADIAL_POINTS)
         rho, weight = (nodes + 1) / 2 * self.radius, weights / 2 * self.radius
         parts = []
         for theta in (np.arange(ANGLES) + 0.5) * 2 * np.pi / ANGLES:
             across = np.cos(theta) * first + np.sin(theta) * second
-            fibres = on.T[:, None] + rho[:, None] * across.T[:, None]
+            fibres = on[:, None] + rho[:, None] * across[:, None]
             depth = np.minimum(fibres, self.size[:, None, None] - fibres).min(axis=0)
-            density = speed * (1 - rho[:, None] * (bend * across).sum(axis=1))
+            density = speed * (1 - rho[:, None] * (bend * across).sum(axis=0))
             parts += (_lengths_inside(s, depth, density) * rho * weight * 2 * np.pi / ANGLES).tolist()
         return float(sum(parts))
 
@@ -105,11 +105,11 @@ class SweptSolid(Solid):
 
 def _lengths_inside(s: Array, depth: Array, density: Array) -> Array:
     """Integrals (m,) of the density (m, n) over the parameters (n,) where the depth (m, n), linear in between, is positive."""
-    a, b = depth[:, :-1], depth[:, 1:]
-    inside = (a >= 0) & (b >= 0)
-    crossing = (a >= 0) != (b >= 0)
-    share = np.where(inside, 1.0, 0.0)
-    share[crossing] = np.maximum(a, b)[crossing] / np.abs(a - b)[crossing]
+    positive = depth >= 0
+    share = (positive[:, :-1] & positive[:, 1:]).astype(float)
+    crossing = np.nonzero(positive[:, :-1] != positive[:, 1:])
+    a, b = depth[:, :-1][crossing], depth[:, 1:][crossing]
+    share[crossing] = np.maximum(a, b) / np.abs(a - b)
     return np.asarray((share * np.diff(s) * (density[:, :-1] + density[:, 1:]) / 2).sum(axis=1))
 
 

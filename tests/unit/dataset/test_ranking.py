@@ -130,7 +130,7 @@ def test_the_command_writes_report_and_figures(
 ) -> None:
     table = response()
     monkeypatch.setattr("tactsim.experiments.localization.response_store.stored_response", lambda folder: table)
-    store, plain = made_store(tmp_path, table, training=38), plain_result(tmp_path / "plain")
+    store, plain = made_store(tmp_path, table, training=39), plain_result(tmp_path / "plain")
     order = [
         "data",
         "rank",
@@ -147,7 +147,7 @@ def test_the_command_writes_report_and_figures(
     assert main(order) == 0
     assert "| model_based |" in capsys.readouterr().out
     content = json.loads((tmp_path / "out" / "report.json").read_text())
-    assert content["samples"] == 2
+    assert content["samples"] == 1
     assert content["noise"]["value"] == pytest.approx(0.3e-3)
     assert {one["name"] for one in content["estimators"]} == {"thesis", "thesis with reference", "model_based", "hypotheses"}
     names = {file.name for file in (tmp_path / "out").iterdir()}

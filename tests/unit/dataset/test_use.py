@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import resource
 import shutil
 import signal
 import subprocess
@@ -17,6 +16,7 @@ import h5py
 import numpy as np
 import pyarrow.parquet
 import pytest
+from fork_server import forked_python
 from sweeps import small_store, sweep_file
 
 from tactsim.cli import main
@@ -324,13 +324,13 @@ def test_an_export_goes_on_after_one_that_was_broken_off(kept: Path, tmp_path: P
 
 @pytest.mark.parametrize("name", [pytest.param("flat", marks=pytest.mark.slow), "whole.h5"])
 def test_an_export_to_a_full_disk_is_an_error_and_leaves_nothing(kept: Path, tmp_path: Path, name: str) -> None:
-    def small() -> None:
-        resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
-
-    command = [sys.executable, "-m", "tactsim.cli", "data", "export", str(kept), "--to", str(tmp_path / name)]
+    program = (
+        "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); "
+        f"from tactsim.cli import main; print(main({['data', 'export', str(kept), '--to', str(tmp_path / name)]}))"
+    )
     environment = {**os.environ, "PYTHONDONTWRITEBYTECODE": "1"}  # a compiled module cut off at that size would break later runs
-    done = subprocess.run(command, capture_output=True, text=True, preexec_fn=small, check=False, env=environment)
-    assert done.returncode == 5
+    done = subprocess.run([*forked_python(), program], capture_output=True, text=True, check=True, env=environment)
+    assert done.stdout == "5\n"
     assert "cannot write" in done.stderr
     assert "Traceback" not in done.stderr
     assert not list(tmp_path.iterdir())

@@ -15,7 +15,7 @@ from open_pages import TOKEN, Client, opened_page, with_client
 
 from tactsim.errors import InputError, StorageError
 from tactsim.live.server import Serving, serve
-from tactsim.live.session import session
+from tactsim.live.session import selection, session
 from tactsim.live.session.content import Content, opened_content
 from tactsim.live.sources.feed import Feed
 
@@ -123,7 +123,9 @@ def test_a_result_arrives_with_its_numbers_pictures_and_estimate(grasp: Content)
     with_client(grasp, act)
 
 
-def test_playing_begins_anew_at_the_end_and_stops_there(grasp: Content) -> None:
+def test_playing_begins_anew_at_the_end_and_stops_there(grasp: Content, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(selection, "SHORTEST", 1.0)
+
     async def act(client: Client) -> None:
         page = await opened_page(client)
         await page.until(lambda: "frame" in page.last)

@@ -48,14 +48,15 @@ def smallest_acoustic_form(material, F: np.ndarray, seed: int) -> float:
     descent from the best by shrinking random steps.
     """
     tangent = material.tangent(F, np.zeros(()))
-    spatial = np.einsum("iJkL,jJ,lL->ijkl", tangent, F, F)  # per deformed directions, J = 1
+    spatial = np.einsum("iJkL,jJ,lL->ijkl", tangent, F, F).reshape(9, 9)  # per deformed directions, J = 1
     generator = np.random.default_rng(seed)
 
     def form(n, m):
         n = n / np.linalg.norm(n, axis=0)
         m = m - n * np.einsum("in,in->n", n, m)
         m = m / np.linalg.norm(m, axis=0)
-        return np.einsum("ijkl,in,jn,kn,ln->n", spatial, m, n, m, n, optimize=True), n, m
+        pairs = np.einsum("in,jn->ijn", m, n).reshape(9, -1)
+        return (pairs * (spatial @ pairs)).sum(axis=0), n, m
 
     values, n, m = form(*generator.normal(size=(2, 3, DIRECTIONS)))
     for width in np.geomspace(0.3, 1e-4, 12):

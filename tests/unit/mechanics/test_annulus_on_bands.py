@@ -26,6 +26,12 @@ def model(soft=SOFT, hard=HARD, mesh=COARSE):
     return AnnulusOnBands(B, A, (soft, hard), (FAR,), mesh=mesh)
 
 
+@cache
+def alone(k):
+    """Response of the soft band (0) or the hard one (1) on its own."""
+    return model().alone(k)
+
+
 def closed(modulus, base="bonded"):
     """Threshold force in N and displacement in m of the closed form."""
     punch = solve_annular_punch(B / A, radius_over_thickness=A / THICK, base=base)
@@ -39,12 +45,12 @@ def test_one_band_is_the_layer_of_the_closed_form():
         assert force == pytest.approx(closed(60e3)[0], rel=0.05)  # elements of a quarter radius on a piece of 4 radii
         assert displacement == pytest.approx(closed(60e3)[1], rel=0.1)  # the same; finer and wider below
 
-    check(model().alone(1))
+    check(alone(1))
     slipping = Band(60e3, THICK, "slipping")
     thin = Band(60e3, THICK / 2, "bonded")
     assert_kills(
         check,
-        soft=(model().alone(0),),
+        soft=(alone(0),),
         slipping=(model(soft=slipping).alone(0),),
         thin=(model(soft=thin).alone(0),),
     )
@@ -52,20 +58,20 @@ def test_one_band_is_the_layer_of_the_closed_form():
 
 def test_bands_of_one_tissue_are_one_band():
     equal = model(soft=HARD)
-    alone, both = equal.alone(1), equal.at(FAR - 0.3 * A)
-    assert both.stiffness == pytest.approx(alone.stiffness, rel=1e-8)
-    assert both.rise == pytest.approx(alone.rise, rel=1e-7)
+    one, both = equal.alone(1), equal.at(FAR - 0.3 * A)
+    assert both.stiffness == pytest.approx(one.stiffness, rel=1e-8)
+    assert both.rise == pytest.approx(one.rise, rel=1e-7)
 
 
 def test_far_from_a_border_there_is_none():
     forces = [model().at(FAR + side * 3.5 * A).threshold(RECESS)[0] for side in (-1, 1)]
-    alone = [model().alone(k).threshold(RECESS)[0] for k in (0, 1)]
-    np.testing.assert_allclose(forces, alone, rtol=0.02)  # the stiffness decays like the distance cubed, the threshold faster
-    assert alone[1] == pytest.approx(6 * alone[0], rel=1e-9), "linear in the modulus"
+    bare = [alone(k).threshold(RECESS)[0] for k in (0, 1)]
+    np.testing.assert_allclose(forces, bare, rtol=0.02)  # the stiffness decays like the distance cubed, the threshold faster
+    assert bare[1] == pytest.approx(6 * bare[0], rel=1e-9), "linear in the modulus"
 
 
 def test_over_a_border_the_threshold_lies_between():
-    soft, hard = (model().alone(k).threshold(RECESS)[0] for k in (0, 1))
+    soft, hard = (alone(k).threshold(RECESS)[0] for k in (0, 1))
     forces = [model().at(FAR + part * A).threshold(RECESS)[0] for part in (-0.5, 0.0, 0.5)]
     assert soft < forces[0] < forces[1] < forces[2] < hard
 

@@ -213,7 +213,9 @@ def test_an_absent_mesher_is_named(mesher):
         block_mesh(SIZE, [LUMP], COARSE)
 
 
-@pytest.mark.parametrize(("cells", "unknowns"), [((15, 15, 7), 43_245), ((21, 21, 10), 116_487)])
+@pytest.mark.parametrize(
+    ("cells", "unknowns"), [((15, 15, 7), 43_245), pytest.param((21, 21, 10), 116_487, marks=pytest.mark.slow)]
+)
 def test_split_cells_are_those_of_the_benchmark(cells, unknowns):
     block = structured_block(SIZE, cells, [LUMP])
     assert block.mesh.nodes.size == unknowns

@@ -249,8 +249,7 @@ def test_a_surface_turned_inside_out_as_a_whole_is_put_right(tmp_path):
     assert solid.inside(np.array([[0.02, 0.02, 0.01]])).all()
 
 
-@pytest.mark.parametrize("ending", ["stl", "ply", "obj"])
-def test_files_of_surfaces_are_read_and_truncated_ones_refused(ending, tmp_path):
+def read_whole_and_refuse_truncated(ending, tmp_path):
     vertices, faces = irregular()
     whole = surface_of(tmp_path, vertices, faces, ending)
     assert_close(whole.solids(BLOCK)[0].volume(), enclosed_volume(vertices, faces) * 1e-9, 1e-6)  # single precision
@@ -261,6 +260,16 @@ def test_files_of_surfaces_are_read_and_truncated_ones_refused(ending, tmp_path)
     path.write_bytes(b"")
     with pytest.raises((StorageError, InputError)):
         whole.solids(BLOCK)
+
+
+def test_a_child_reads_the_file_of_a_surface_and_refuses_a_truncated_one(tmp_path):
+    read_whole_and_refuse_truncated("stl", tmp_path)
+
+
+@here
+@pytest.mark.parametrize("ending", ["ply", "obj"])
+def test_files_of_surfaces_are_read_and_truncated_ones_refused(ending, tmp_path):
+    read_whole_and_refuse_truncated(ending, tmp_path)
 
 
 @here

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +15,11 @@ from wrong_rows import left, unmoved
 from tactsim.errors import CaseError, InputError, InvalidQuantity, UnknownName
 from tactsim.validation import compare, load_tables
 from tactsim.validation.endings import Confirmed
-from tactsim.validation.execution import StudyRunner
+from tactsim.validation.execution import StudyRunner, simulated
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.grasp import taxel_asymmetry, taxel_change, taxel_contrast, taxel_history, taxel_pulse
 from tactsim.validation.report import CLASSES, Validation, count_rows, table_text
-from tactsim.validation.study import RunOutcome
+from tactsim.validation.study import RunOutcome, Study
 from tactsim.validation.table import Row
 
 SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
@@ -212,25 +212,36 @@ def test_a_claim_that_calls_nothing_is_refused() -> None:
         type(row).model_validate({**row.model_dump(by_alias=True), "evaluate": None})
 
 
-def check(rows: Sequence[Row], runner: StudyRunner) -> None:
-    """Runs what the rows need; each must hold, and must not hold if it is made wrong."""
+def check(rows: Sequence[Row], outcomes: Callable[[Sequence[Study]], Mapping[str, tuple[RunOutcome, ...]]]) -> None:
+    """Runs the studies that the rows need; each must hold, and must not hold if it is made wrong."""
     needed = {name for row in rows if row.evaluate for name in _runs_of(row.evaluate.model_dump())}
     studies = [
         study.model_copy(update={"runs": kept})
         for study in TABLE_6_6.studies
         if (kept := tuple(run for run in study.runs if run.id in needed))
     ]
-    ((_, outcomes),) = runner.outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)
-    simulated = Inputs(folder=SHIPPED, studies=outcomes)
-    assert left(rows, simulated) == []
-    assert unmoved(rows, simulated) == []
+    inputs = Inputs(folder=SHIPPED, studies=outcomes(studies))
+    assert left(rows, inputs) == []
+    assert unmoved(rows, inputs) == []
 
 
-def test_the_row_of_one_short_simulation_holds(tmp_path: Path) -> None:
-    check([row for row in TABLE_6_6.rows if row.id.startswith("symmetry.ball")], StudyRunner(workers=1, cache=tmp_path))
+def computed_here(studies: Sequence[Study]) -> Mapping[str, tuple[RunOutcome, ...]]:
+    return {
+        study.name: tuple(simulated((run.id, str(SHIPPED / study.case), study.overrides(run))) for run in study.runs)
+        for study in studies
+    }
+
+
+def test_the_row_of_one_short_simulation_holds() -> None:
+    check([row for row in TABLE_6_6.rows if row.id.startswith("symmetry.ball")], computed_here)
 
 
 @pytest.mark.slow
 def test_every_row_holds_and_none_that_is_wrong() -> None:
     """Simulations come from the user's cache if the code that makes them is the same."""
-    check(TABLE_6_6.rows, StudyRunner())
+
+    def kept(studies: Sequence[Study]) -> Mapping[str, tuple[RunOutcome, ...]]:
+        ((_, outcomes),) = StudyRunner().outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)
+        return outcomes
+
+    check(TABLE_6_6.rows, kept)

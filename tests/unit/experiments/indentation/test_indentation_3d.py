@@ -55,7 +55,7 @@ def test_threshold_then_the_sensor_presses_too():
     assert values["threshold_pressure"] == pytest.approx(values["threshold_force"] / (np.pi * (3e-3**2 - 1.5e-3**2)))
     assert {name for step in touched.steps for name in step.values} <= set(touched.units)
     assert set(touched.frames[-1].cells) == {"tetra10"}
-    beyond = thin(stop="displacement", steps={"first": 0.05e-3}).run()
+    beyond = thin(stop="displacement", displacement=0.08e-3, steps={"first": 0.05e-3}).run()
     last = beyond.steps[-1].values
     assert beyond.status == "converged"
     assert last["sensor_force"] > 1e-4 * last["base_force"], "far more than the tolerance of the balance"
