@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path as FilePath
 from typing import Any
@@ -73,8 +74,27 @@ def read_yaml(text: str) -> Document:
     YamlProblems
         For broken syntax, a tag, a repeated key, a number that is not finite, or too many or too deeply nested values.
     """
+    return _composed(_Composer(text))
+
+
+def first_values(text: str, *wanted: Path) -> dict[Path, Any]:
+    """The scalars at these key paths, of a text that is read no further than to the last of them; those that it has.
+
+    Raises
+    ------
+    YamlProblems
+        As `read_yaml`, for what is read.
+    """
+    seeker = _Seeker(text, wanted)
+    with suppress(_AllFound):
+        _composed(seeker)
+    return seeker.found
+
+
+def _composed(composer: _Composer) -> Document:
+    """What a composer makes of its text; raises as `read_yaml` says."""
     try:
-        return _Composer(YAML(typ="safe", pure=True).parse(text)).document()
+        return composer.document()
     except MarkedYAMLError as error:
         mark = error.problem_mark or error.context_mark
         what = " ".join(part for part in (error.context, error.problem) if part)
@@ -92,8 +112,8 @@ def read_yaml(text: str) -> Document:
 class _Composer:
     """Builds plain values from the parser's events, refusing what a case file has no use for."""
 
-    def __init__(self, events: Iterator[Any]):
-        self.events = events
+    def __init__(self, text: str):
+        self.events: Iterator[Any] = YAML(typ="safe", pure=True).parse(text)
         self.lines: dict[Path, int] = {}
         self.problems: list[Problem] = []
         self.anchors: dict[str, tuple[Any, int]] = {}
@@ -185,6 +205,27 @@ class _Composer:
 
     def _problem(self, event: Any, path: Path, message: str) -> None:
         self.problems.append(Problem(path, _line(event), message))
+
+
+class _AllFound(Exception):
+    """Nothing more is wanted of a text."""
+
+
+class _Seeker(_Composer):
+    """Stops once it has the scalars at all key paths that are wanted."""
+
+    def __init__(self, text: str, wanted: Sequence[Path]):
+        super().__init__(text)
+        self._wanted = set(wanted)
+        self.found: dict[Path, Any] = {}
+
+    def _scalar(self, event: ScalarEvent, path: Path) -> Any:
+        value = super()._scalar(event, path)
+        if path in self._wanted:
+            self.found[path] = value
+            if len(self.found) == len(self._wanted):
+                raise _AllFound
+        return value
 
 
 _INTEGER = re.compile(r"[-+]?[0-9]+", re.ASCII)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 from collections.abc import Callable, Iterable
+from pathlib import Path
+from typing import Any
 
 from tactsim.cli import console
 from tactsim.outside.text import one_line
@@ -21,6 +23,9 @@ examples:
   tactsim list kinds
 """
 Lines = Iterable[tuple[str, str]]
+KeyPath = tuple[str | int, ...]
+SCHEMA, TITLE, KIND = ("schema",), ("title",), ("experiment", "kind")
+"""Where a file says what it is."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -44,15 +49,24 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _titled(schema: str) -> Lines:
-    """Name and title of the shipped files of a schema."""
-    from tactsim.case.yaml_reading import read_yaml
-    from tactsim.shipped import shipped_cases
+def _titled(schema: str) -> Callable[[], Lines]:
+    """Name, kind and title of the shipped files of a schema."""
 
-    for path in shipped_cases():
-        written = read_yaml(path.read_text(encoding="utf-8")).value
-        if str(written.get("schema", "")).startswith(schema):
-            yield path.stem, f"{written.get('experiment', {}).get('kind', '')}: {written.get('title', '')}"
+    def lines() -> Lines:
+        from tactsim.shipped import shipped_cases
+
+        written = _written(shipped_cases(), schema, KIND)
+        return ((name, f"{values.get(KIND, '')}: {values.get(TITLE, '')}") for name, values in written.items())
+
+    return lines
+
+
+def _written(paths: Iterable[Path], schema: str, *more: KeyPath) -> dict[str, dict[KeyPath, Any]]:
+    """Name -> schema, title and ``more`` of those files that have a schema that begins so."""
+    from tactsim.case.yaml_reading import first_values
+
+    heads = {path.stem: first_values(path.read_text(encoding="utf-8"), SCHEMA, TITLE, *more) for path in paths}
+    return {name: values for name, values in heads.items() if str(values.get(SCHEMA, "")).startswith(schema)}
 
 
 def _materials() -> Lines:
@@ -72,18 +86,18 @@ def _classes(point: str) -> Callable[[], Lines]:
 
 
 def _tables() -> Lines:
-    from tactsim.case.yaml_reading import read_yaml
     from tactsim.shipped import CASES
 
-    for path in (path for group in ("thesis", "published") for path in sorted((CASES / group).glob("*.yaml"))):
-        written = read_yaml(path.read_text(encoding="utf-8")).value
-        if "rows" in written:
-            yield path.stem, str(written.get("title", ""))
+    return (
+        (name, str(values.get(TITLE, "")))
+        for group in ("thesis", "published")
+        for name, values in _written(sorted((CASES / group).glob("*.yaml")), "tactsim/thesis-table/").items()
+    )
 
 
 SECTIONS: dict[str, Callable[[], Lines]] = {
-    "cases": lambda: _titled("tactsim/case/"),
-    "sweeps": lambda: _titled("tactsim/sweep/"),
+    "cases": _titled("tactsim/case/"),
+    "sweeps": _titled("tactsim/sweep/"),
     "materials": _materials,
     "kinds": _classes("experiment"),
     "estimators": _classes("estimator"),

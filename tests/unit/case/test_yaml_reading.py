@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tactsim.case.yaml_reading import LARGEST_COUNT, LARGEST_DEPTH, YamlProblems, read_yaml
+from tactsim.case.yaml_reading import LARGEST_COUNT, LARGEST_DEPTH, YamlProblems, first_values, read_yaml
 
 
 def test_plain_values_follow_the_core_schema() -> None:
@@ -79,3 +79,11 @@ def test_an_alias_bomb_is_refused_before_it_grows() -> None:
     lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 10)}]" for n in range(1, 30)]
     with pytest.raises(YamlProblems, match=f"more than {LARGEST_COUNT} values"):
         read_yaml("\n".join(lines))
+
+
+def test_first_values_are_read_no_further_than_to_the_last_of_them() -> None:
+    text = "title: a\nexperiment:\n  size: 3 mm\n  kind: grasp\n  kind: twice\n"
+    assert first_values(text, ("title",), ("experiment", "kind")) == {("title",): "a", ("experiment", "kind"): "grasp"}
+    with pytest.raises(YamlProblems, match="repeated key"):
+        first_values(text, ("title",), ("steps",))
+    assert first_values("title: a\nrows: [1]\n", ("title",), ("experiment", "kind")) == {("title",): "a"}
