@@ -56,7 +56,7 @@ def cut_words(result: Result) -> list[str]:
     """Words in a figure of the result that reach beyond its border; labels of ticks aside, some of which are never drawn."""
     beyond = []
     for name, figure in result.plot().items():
-        figure.canvas.draw()
+        figure.draw_without_rendering()
         ticks = {
             label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels(which="both")
         }
