@@ -189,7 +189,7 @@ def _program(text: str) -> int:
 
 
 def _load() -> None:
-    """Import what the commands use."""
+    """Import what the commands use; what they write must outlive no power cut."""
     import matplotlib.backends.backend_agg
     import matplotlib.figure  # noqa: F401
 
@@ -200,6 +200,7 @@ def _load() -> None:
     from tactsim.registry import kinds
 
     kinds(Experiment)
+    os.fsync = lambda descriptor: None
     assert len(os.listdir("/proc/self/task")) == 1, "a process with threads must not be forked"
 
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from matplotlib.figure import Figure
 from matplotlib.text import Text
 
 from tactsim.array import Array
@@ -66,11 +67,11 @@ def unmarked_figures(result: Result) -> list[str]:
     return [name for name, said in words.items() if not said.startswith("INTERRUPTED") or "stopped by the user" not in said]
 
 
-def cut_words(result: Result) -> list[str]:
-    """Words in a figure of the result that reach beyond its border; labels of ticks aside, some of which are never drawn."""
+def cut_words(figures: dict[str, Figure]) -> list[str]:
+    """Words in figures by name that reach beyond the border; labels of ticks aside, some of which are never drawn."""
     beyond = []
-    for name, figure in result.plot().items():
-        figure.canvas.draw()
+    for name, figure in figures.items():
+        figure.draw_without_rendering()
         ticks = {
             label for axes in figure.axes for axis in (axes.xaxis, axes.yaxis) for label in axis.get_ticklabels(which="both")
         }

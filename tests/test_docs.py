@@ -30,7 +30,7 @@ PAGES = [
 ]
 
 
-LONG = ("guide/run.md", "guide/time.md", "guide/grasp.md", "guide/sensors.md", "guide/data_sets.md")
+LONG = ("start/design.md", "guide/run.md", "guide/time.md", "guide/grasp.md", "guide/sensors.md", "guide/data_sets.md")
 """Pages whose cases take more than ten seconds."""
 
 

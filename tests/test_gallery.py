@@ -13,7 +13,7 @@ import tactsim as ts
 
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
 SCRIPTS = sorted(GALLERY.glob("plot_*.py"))
-QUICK = {"annulus_design", "calibration", "film_creep", "film_test", "story_lump_detector", "tactile_bands", "thermogravimetry"}
+QUICK = {"annulus_design", "calibration", "film_creep", "film_test", "tactile_bands", "thermogravimetry"}
 """Those that take less than two seconds each, once the libraries are loaded."""
 ANYWHERE = {"story_lump_detector", "story_threshold_sensor"}
 """Stories, which go through several experiments."""

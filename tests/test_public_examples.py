@@ -7,8 +7,10 @@ import inspect
 from pathlib import Path
 
 import pytest
+from sweeps import Inline
 
 import tactsim as ts
+from tactsim.dataset.running.executors import LocalWorkers
 
 STORE = "annuli.zarr"
 """What the example of `sweep` makes and that of `load_data` reads."""
@@ -37,6 +39,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 @pytest.mark.parametrize("name", ts.__all__)
 def test_the_example_of_a_name_gives_what_it_says(name: str, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(folder)
+    monkeypatch.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep))  # test_public_surface starts a real worker
     lines = example(name).examples
     assert any("ts." in line.source for line in lines), f"ts.{name} has no example"
     assert lines[-1].want, "an example ends with what it gives"

@@ -18,6 +18,7 @@ import tactsim as ts
 from tactsim.case.writing import case_text
 from tactsim.contact.jaw import Jaw
 from tactsim.dataset import TorchSamples
+from tactsim.dataset.figures import card as dataset_card
 from tactsim.dataset.running import resuming
 from tactsim.dataset.running.executors import LocalWorkers
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
@@ -51,8 +52,9 @@ def result(case: ts.Case) -> ts.Result:
 
 @pytest.fixture
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sweeps compute here: a worker takes seconds to begin, and one test has a real one."""
+    """Sweeps compute here and draw nothing: a worker takes seconds to begin, and one test has a real one and the figures."""
     monkeypatch.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep))
+    monkeypatch.setattr(dataset_card, "card_figures", lambda store: {})
 
 
 @pytest.fixture

@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any
 
 import jsonschema
-import numpy as np
 import pytest
 from ruamel.yaml import YAML
 from scenes import cut_words, unmarked_figures
@@ -19,7 +18,7 @@ from tactsim.case.json_schema import case_json_schema
 from tactsim.case.loading import load_case
 from tactsim.errors import CaseError
 from tactsim.interfaces import Experiment
-from tactsim.plotting import figures_for
+from tactsim.plotting.canvas import encoded
 from tactsim.registry import kinds
 from tactsim.results.result import Status, StepRecord
 from tactsim.results.scene import Scene, read_scene, written_scene
@@ -131,7 +130,7 @@ def test_the_example_runs_and_is_drawn(kind: str, tmp_path: Path, monkeypatch: p
         assert quantity.unit == "1" or is_unit(quantity.unit), name
     if result.scene is not None:
         assert read_scene(kind, json.loads(json.dumps(written_scene(result.scene, kind)))) == result.scene
-    drawings = figures_for(result)
-    assert all(np.frombuffer(draw()[:8], np.uint8).tobytes() == b"\x89PNG\r\n\x1a\n" for draw in drawings.values())
     assert unmarked_figures(result) == []
-    assert cut_words(result) == []
+    figures = result.plot()
+    assert cut_words(figures) == []
+    assert all(encoded(figure).startswith(b"\x89PNG\r\n\x1a\n") for figure in figures.values())

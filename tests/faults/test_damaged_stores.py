@@ -37,8 +37,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sweeps start no processes, draw nothing and do not wait for the disk."""
-    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
+    """Sweeps start no processes and draw nothing."""
     monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
     monkeypatch.setattr(dataset_card, "card_figures", lambda store: {})
 

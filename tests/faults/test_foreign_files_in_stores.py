@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import shutil
 from pathlib import Path
 
@@ -19,8 +18,7 @@ from tactsim.storage.own_files import OWN_LIST
 
 @pytest.fixture(autouse=True)
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sweeps start no processes, the figure is a dot, and nothing waits for the disk."""
-    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
+    """Sweeps start no processes, and the figure is a dot."""
     monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
     monkeypatch.setattr(dataset_card, "card_figures", lambda store: {"spread.png": lambda: PNG})
 

@@ -49,7 +49,6 @@ def bounded(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Samples are computed once and in this process, nothing is drawn, and memory is bounded."""
     known = cache(lambda text, samples: computing.computed(text, samples))
     monkeypatch.setattr("sweeps.computed", lambda text, samples: known(text, tuple(samples)))
-    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
     monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
     monkeypatch.setattr(dataset_card, "card_figures", lambda store: {})
     kept()

@@ -34,8 +34,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def in_this_process(monkeypatch: pytest.MonkeyPatch, hdf5_here: None) -> None:
-    """HDF5 is written here instead of in a process of its own, whose end is tried apart; nothing waits for the disk."""
-    monkeypatch.setattr(os, "fsync", lambda descriptor: None)
+    """HDF5 is written here instead of in a process of its own, whose end is tried apart."""
     monkeypatch.setattr(export, "SHARD_SAMPLES", 10)
 
 

@@ -37,7 +37,6 @@ STRIDE, CREATION_STRIDE = 149, 17
 @pytest.fixture(autouse=True)
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Samples are computed once, the figure is a dot, and the journal goes into the arrays after each task."""
-    monkeypatch.setattr(os, "fsync", lambda descriptor: None)  # a kill leaves what the system holds
     kept = cache(lambda text, samples: computing.computed(text, samples))
     monkeypatch.setattr("sweeps.computed", lambda text, samples: kept(text, tuple(samples)))
     monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))

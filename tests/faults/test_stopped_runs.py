@@ -125,7 +125,7 @@ def test_a_stream_closed_before_the_start_is_no_error(start: Start, tmp_path: Pa
 
 
 def test_the_head_of_a_long_answer(start: Start) -> None:
-    process = start("schema")
+    process = start("schema", forked=True)
     assert process.stdout is not None
     assert process.stdout.readline() == "{\n"
     process.stdout.close()

@@ -83,7 +83,7 @@ def lump_grasp(spoil: float = 0.0) -> np.ndarray:
         block=ts.Block(size=("30 mm", "30 mm", "18 mm"), tissue=tissue.model_copy(update={"c10": tissue.c10 * (1 + spoil)})),
         inclusions=[ts.Embedded(shape=ball, material="lump")],
         loading=ts.close(to="0.5 mm", duration="1 s"),
-        mesh={"kind": "graded", "size": "6 mm", "inclusion_size": "4 mm", "edge_size": "2.2 mm", "growth": 1},
+        mesh={"kind": "graded", "size": "8 mm", "inclusion_size": "4 mm", "edge_size": "6 mm", "growth": 1.5},
         time={"steps": 1},
     )
     return grasp.run(None)["taxel_force_upper"].numbers

@@ -50,21 +50,28 @@ def unlike(forces: np.ndarray) -> float:
     return float(max(np.abs(forces - image).max() for image in images) / forces.max())
 
 
-def test_taxels_of_jaws_smaller_than_the_block_are_equal_and_right(verification_record, monkeypatch):
+def check_equal(forces: np.ndarray) -> None:
+    """Taxels that mirror each other are equal."""
+    assert unlike(forces) < EQUAL
+
+
+def check_right(forces: np.ndarray) -> None:
+    """Taxels are those of a finer mesh."""
+    assert np.abs(forces - FINE).max() < SHARE * FINE.max()
+
+
+def test_taxels_of_jaws_smaller_than_the_block_are_equal_and_right(verification_record):
     forces = pressed({"kind": "automatic"})
-
-    def check_equal(forces):
-        assert unlike(forces) < EQUAL
-
-    def check_right(forces):
-        assert np.abs(forces - FINE).max() < SHARE * FINE.max()
-
     check_equal(forces)
     check_right(forces)
     known = {"reference": "taxels that are images of each other", "kind": "invariance", "mesh": "default", "tolerance": EQUAL}
     verification_record("equal taxels of jaws smaller than the block, difference", unlike(forces), 0.0, scale=1.0, **known)
     known = {"reference": "110 754 unknowns", "kind": "invariance", "mesh": "default, 25 558 unknowns", "tolerance": SHARE}
     verification_record("taxels of jaws smaller than the block", forces, np.stack([FINE, FINE]), **known)
+
+
+@pytest.mark.slow
+def test_cells_that_no_plane_mirrors_or_without_lines_at_the_edges_are_seen(monkeypatch):
     assert_kills(check_equal, not_mirrored=(pressed({"kind": "structured", "cells": (7, 7, 4)}),))
     monkeypatch.setattr(GraspSetup, "flats", [])
     assert_kills(check_right, without_edges=(pressed({"kind": "graded"}),))

@@ -145,9 +145,10 @@ def test_relaxing_cube_in_the_end_is_elastic_with_what_remains():
 # The same cube, incompressible, under a dead load: creep to a stretch of six.
 
 
-def creep(times: Array, stress: float = 3.583333333333333e6, c10: float = 1e6, steps: int = 4000) -> Array:
+def creep(times: Array, stress: float = 3.583333333333333e6, c10: float = 1e6, steps: int = 1000) -> Array:
     """Stretches at ascending times in s of an incompressible neo-Hookean bar under a nominal stress, of the same convolution of
-    second Piola-Kirchhoff stresses, marched along one stretch in steps far finer than those of the solution."""
+    second Piola-Kirchhoff stresses, marched along one stretch in steps far finer than those of the solution;
+    four times as many change 2e-6."""
 
     def elastic(stretch: float) -> Array:
         first = stretch**2 + 2 / stretch
@@ -222,23 +223,28 @@ def test_clamped_sheet_falls_with_the_mesh_to_less_than_the_reference():
 SLIPS = {"slip_0": 28.6e-6, "slip_1": 27.2e-6, "slip_5": 22.8e-6, "slip_7": 19.8e-6, "slip_11": 15.0e-6}
 
 
+def check_slips(result):
+    """As code_aster holds it: a mean of several programs."""
+    for name, published in SLIPS.items():
+        assert_close(value(result, name), published, 0.05)
+
+
 def test_plate_on_plane(verification_record):
     result = solution("plate_on_plane")
-
-    def check(slips):
-        for name, published in SLIPS.items():
-            assert_close(slips[name], published, 0.05)  # as code_aster holds it: a mean of several programs
-
-    check({name: value(result, name) for name in SLIPS})
+    check_slips(result)
     balance = value(result, "normal_force") / (50e6 * 0.04)
     assert 0.95 < balance < 1.0  # the held corner bears the rest
     assert abs(value(result, "friction_force")) <= value(result, "normal_force")
-    contact = problem("plate_on_plane").contacts[0]
-    smooth = solved(changed("plate_on_plane", contacts=(contact.model_copy(update={"law": type(contact.law)(friction=0.9)}),)))
-    assert_kills(check, less_friction=({name: value(smooth, name) for name in SLIPS},))
     known = {"reference": "code_aster SSNV128 (Feijoo, Barbosa & Zouain 1988)", "kind": "published", "mesh": "32 x 16 cells"}
     for name, published in SLIPS.items():
         verification_record("plate on a rigid plane, slip", value(result, name), published, tolerance=0.05, scale=15e-6, **known)
+
+
+@pytest.mark.slow
+def test_a_plate_on_a_plane_with_less_friction_slips_otherwise():
+    contact = problem("plate_on_plane").contacts[0]
+    smooth = solved(changed("plate_on_plane", contacts=(contact.model_copy(update={"law": type(contact.law)(friction=0.9)}),)))
+    assert_kills(check_slips, less_friction=(smooth,))
 
 
 # Rivlin's torsion, and the inflation of a tube.
@@ -352,7 +358,7 @@ def test_inflated_tube_converges(verification_record):
 
 def test_cylinder_between_plates(verification_record):
     """Mutants: half of the cylinder, and the second coefficient left out; in plane strain only the sum of both counts."""
-    result = solution("cylinder_between_plates")
+    result = solved(changed("cylinder_between_plates", steps=6))  # the twenty of the case change 4e-7: elastic, without friction
     read = {"force_100mm": 250e3, "force_200mm": 1400e3}
 
     def check(share):
@@ -375,7 +381,12 @@ def bonded_over_smooth(poisson_ratio: float) -> float:
 
 
 @pytest.mark.parametrize(
-    ("poisson_ratio", "printed"), [(0.0, 1.09861), pytest.param(0.3, 1.02863, marks=pytest.mark.slow), (0.4, 1.00942)]
+    ("poisson_ratio", "printed"),
+    [
+        (0.0, 1.09861),
+        pytest.param(0.3, 1.02863, marks=pytest.mark.slow),
+        pytest.param(0.4, 1.00942, marks=pytest.mark.slow),
+    ],
 )
 def test_bonded_and_smooth_disc(poisson_ratio, printed, verification_record):
     assert abs(bonded_over_smooth(poisson_ratio) - printed) <= 6e-6  # printed to five digits

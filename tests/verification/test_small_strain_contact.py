@@ -49,8 +49,8 @@ LAYERS = [
     (1.0, "slipping", 0.25, 2.1815, None),
     (1.0, "slipping", 0.50, 2.0647, None),
 ]
-QUICK_LAYERS = [(0.5, "fixed", 0.75), (1.0, "slipping", 0.50)]
-QUICK_PUNCH_LAYERS = [(1.0, "fixed", 3.6187), (1.0, "slipping", 2.1986)]
+QUICK_LAYERS = [(0.5, "fixed", 0.75)]
+QUICK_PUNCH_LAYERS = [(1.0, "slipping", 2.1986)]
 PUNCH_LAYERS = [(0.2, "fixed", 1.2806), (1.0, "fixed", 3.6187), (2.0, "fixed", 9.1495), (1.0, "slipping", 2.1986)]
 
 
@@ -73,10 +73,15 @@ SKINS = [
 
 
 @cache
-def press(body, thickness, *, displacement=DISPLACEMENT, base="fixed", friction=0.0, poisson_ratio=0.5, layers=(), **sizes):
-    """Force in N, and height of the axis in m; what is below the layers has ``SHEAR_MODULUS`` and ``poisson_ratio``."""
+def press(
+    body, thickness, *, displacement=DISPLACEMENT, base="fixed", friction=0.0, poisson_ratio=0.5, layers=(), across=20, **sizes
+):
+    """Force in N, and height of the axis in m; what is below the layers has ``SHEAR_MODULUS`` and ``poisson_ratio``.
+
+    A layer reaches ``across`` times the larger of its thickness and the radius of contact.
+    """
     material = elastic(SHEAR_MODULUS, poisson_ratio)
-    width = thickness if thickness >= HALF_SPACE else 20 * max(thickness, RADIUS)
+    width = thickness if thickness >= HALF_SPACE else across * max(thickness, RADIUS)
     experiment = Indentation(
         specimen=Specimen(material=material, thickness=thickness, radius=width, base=base, layers=layers),
         body=body,
@@ -185,7 +190,8 @@ def test_ball_far_wider_than_a_bonded_layer(ratio, poisson_ratio, depth, factor,
     radius = 1e3 * RADIUS  # a flat cap: at 50 times, the inward slip of a compressible surface costs 0.5 % of the force
     displacement = depth * RADIUS**2 / radius
     thickness, size = RADIUS / ratio, RADIUS / 25
-    force, _ = press(Sphere(radius=radius), thickness, displacement=displacement, poisson_ratio=poisson_ratio, finest=size)
+    sizes = {"finest": size, "across": 8}  # the ball lies along the whole layer, whose cells are as small everywhere
+    force, _ = press(Sphere(radius=radius), thickness, displacement=displacement, poisson_ratio=poisson_ratio, **sizes)
 
     def found(poisson_ratio):
         return force / (8 / 3 * SHEAR_MODULUS / (1 - poisson_ratio) * radius**0.5 * displacement**1.5)
