@@ -88,7 +88,7 @@ def first_values(text: str, *wanted: Path) -> dict[Path, Any]:
     seeker = _Seeker(text, wanted)
     with suppress(_AllFound):
         _composed(seeker)
-    return seeker.found
+    return seeker.values
 
 
 def _composed(composer: _Composer) -> Document:
@@ -217,13 +217,13 @@ class _Seeker(_Composer):
     def __init__(self, text: str, wanted: Sequence[Path]):
         super().__init__(text)
         self._wanted = set(wanted)
-        self.found: dict[Path, Any] = {}
+        self.values: dict[Path, Any] = {}
 
     def _scalar(self, event: ScalarEvent, path: Path) -> Any:
         value = super()._scalar(event, path)
         if path in self._wanted:
-            self.found[path] = value
-            if len(self.found) == len(self._wanted):
+            self.values[path] = value
+            if len(self.values) == len(self._wanted):
                 raise _AllFound
         return value
 

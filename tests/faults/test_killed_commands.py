@@ -112,9 +112,9 @@ def test_a_set_of_files_killed_at_any_step_is_the_old_or_the_new(tmp_path: Path)
 
 def test_validate_replaces_only_what_it_wrote(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out"
-    assert main(["validate", "section_3_1_1", "--out", str(out)]) == 0
-    assert main(["validate", "section_3_1_1", "--out", str(out)]) == 0
+    assert main(["validate", "appendix_a", "--out", str(out)]) == 0
+    assert main(["validate", "appendix_a", "--out", str(out)]) == 0
     (out / "notes.md").write_text("mine", encoding="utf-8")
-    assert main(["validate", "section_3_1_1", "--out", str(out)]) == StorageError.exit_code
+    assert main(["validate", "appendix_a", "--out", str(out)]) == StorageError.exit_code
     assert "'notes.md', which tactsim did not write" in capsys.readouterr().err
     assert (out / "notes.md").exists()
