@@ -89,6 +89,7 @@ def lump_grasp(spoil: float = 0.0) -> np.ndarray:
     return grasp.run(None)["taxel_force_upper"].numbers
 
 
+@pytest.mark.slow
 def test_a_grasp_again_in_one_process_is_equal_bit_by_bit(verification_record):
     """What is computed in between shifts the places in memory, on which sums depended once."""
     first, again = lump_grasp(), lump_grasp()
