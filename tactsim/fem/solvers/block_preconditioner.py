@@ -112,6 +112,8 @@ class BlockPreconditioned(IterativeSolver):
             y, _ = gcrotmk(operator, self._scale * left, rtol=0.0, atol=target, M=guide, m=RESTART, k=1, maxiter=1)
             solution = solution + self._scale * y
             left = right - self._matrix @ solution
+            if self._above(left, goal, largest):
+                self._displacements.renew()
         if self._above(left, goal, largest):
             raise ConvergenceError(
                 f"the iterative solver left {np.linalg.norm(self._scale * left) / size:.1e} of the residual after "
