@@ -57,6 +57,11 @@ class Counting(IterativeSolver):
         self.accuracies: list[float] = []
         self.seconds: list[float] = []
 
+    @property
+    def finest_step(self) -> float:  # type: ignore[override]  # of the class elsewhere
+        """Of the solver that is counted."""
+        return self._solver.finest_step
+
     def factor(self, system: LinearSystem) -> None:
         """Make the preconditioner."""
         self._begin = time.process_time()

@@ -19,7 +19,7 @@ from tactsim.fem.equilibrium.diagnosis import inside_out_in_words, not_finite_in
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.equilibrium.newton_step import Factored, NewtonStep, bordered
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
-from tactsim.fem.solvers.linear import LinearSolver, is_exact, resolved, solved
+from tactsim.fem.solvers.linear import LinearSolver, finest_step, is_exact, resolved, solved
 from tactsim.fem.solvers.solver_choice import section_solver
 from tactsim.fem.threads import one_vector_thread
 
@@ -228,7 +228,7 @@ class _Solution:
     def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:
         """Newton's step of the unknowns, and of the rigid displacement of the interfaces under load control."""
         needed = SHARE_OF_TOLERANCE * self._goal / state.residual
-        accuracy = min(max(FORCING * state.residual, needed), LARGEST_FORCING)
+        accuracy = min(max(FORCING * state.residual, needed, finest_step(self._solver)), LARGEST_FORCING)
         body, interfaces, control = self._body, self._forces.interfaces, self._forces.load_control
         constraints, solver = self._balance.constraints, self._solver
         data = body.tangent(state.unknowns, state.kinematics)

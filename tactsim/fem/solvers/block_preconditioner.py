@@ -29,6 +29,9 @@ RESTART = 80
 MOST_CYCLES = 6
 FINEST = 1e-11
 """Smallest relative error requested; below it, round-off of the stiff contact dominates."""
+FINEST_STEP = 1e-3
+"""Smallest error of a step that Newton asks for. A step in contact is as good with it: a grasp of 93 660 unknowns takes as many
+systems as with 8e-5, the longest of them 17 iterations instead of 21."""
 BULK = 1.0
 """b, bulk over shear modulus of the augmentation."""
 SHARE = 0.3
@@ -42,6 +45,7 @@ class BlockPreconditioned(IterativeSolver):
     """
 
     name = "block_preconditioned"
+    finest_step = FINEST_STEP
 
     def __init__(self, body: Body):
         self._displacements, self._dilatation = TwoLevel(body), dilatation(body)
@@ -108,6 +112,8 @@ class BlockPreconditioned(IterativeSolver):
             y, _ = gcrotmk(operator, self._scale * left, rtol=0.0, atol=target, M=guide, m=RESTART, k=1, maxiter=1)
             solution = solution + self._scale * y
             left = right - self._matrix @ solution
+            if self._above(left, goal, largest):
+                self._displacements.renew()
         if self._above(left, goal, largest):
             raise ConvergenceError(
                 f"the iterative solver left {np.linalg.norm(self._scale * left) / size:.1e} of the residual after "

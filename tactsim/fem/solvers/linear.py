@@ -62,6 +62,8 @@ class IterativeSolver(ABC):
     name: str
     exact: bool = False
     """Whether it solves exactly whatever the accuracy asked for, by a factor of the last system."""
+    finest_step: float = 0.0
+    """Error of a step of Newton's over its size below which further iterations cost more than the next step."""
 
     @abstractmethod
     def factor(self, system: LinearSystem) -> None:
@@ -82,6 +84,11 @@ LinearSolver = DirectSolver | IterativeSolver
 def is_exact(solver: LinearSolver) -> bool:
     """Whether its solutions are exact ones of the last system, by a factor that it keeps."""
     return not isinstance(solver, IterativeSolver) or solver.exact
+
+
+def finest_step(solver: LinearSolver) -> float:
+    """Smallest error of a step over its size that Newton asks of a solver; of a direct one, which is exact, none."""
+    return solver.finest_step if isinstance(solver, IterativeSolver) else 0.0
 
 
 class SuperLU:

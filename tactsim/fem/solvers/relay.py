@@ -33,6 +33,11 @@ class Relay(IterativeSolver):
         """Whether that one is."""
         return self.current.exact
 
+    @property
+    def finest_step(self) -> float:  # type: ignore[override]  # of the class elsewhere
+        """Of the solver that solves now."""
+        return self.current.finest_step
+
     def factor(self, system: LinearSystem) -> None:
         """Take a system and make its preconditioner."""
         self._system = system

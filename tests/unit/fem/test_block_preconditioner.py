@@ -9,7 +9,8 @@ from solids import body_of, box, facets_where, held, on_plane
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.constraints import Constraints
-from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned
+from tactsim.fem.equilibrium.newton import Problem
+from tactsim.fem.solvers.block_preconditioner import FINEST_STEP, BlockPreconditioned
 from tactsim.fem.solvers.linear import LOOSENESS, SuperLU, direct_solver, solved
 from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso
 from tactsim.fem.solvers.reused_factor import ReusedFactor
@@ -115,6 +116,76 @@ def test_it_stops_where_a_solution_is_accepted():
     step = solved(solver, matrix, right, 1e-2)
     assert solver.iterations <= 10
     assert np.abs(matrix @ step - right).max() < LOOSENESS * 1e-2 * np.abs(right).max()
+
+
+def counted_factors(solver, monkeypatch):
+    """A list that grows with every coarse factor of the solver."""
+    made, factor = [], solver._displacements._direct.factor
+    monkeypatch.setattr(solver._displacements._direct, "factor", lambda matrix: made.append(matrix.shape) or factor(matrix))
+    return made
+
+
+def test_a_coarse_factor_serves_until_contact_rules_other_nodes(monkeypatch):
+    body, pressed, right = system((5, 5, 3))
+    free = system((5, 5, 3), contact=False)[1]
+    solver, direct = BlockPreconditioned(body), direct_solver()
+    made, counts = counted_factors(solver, monkeypatch), []
+    monkeypatch.setattr("tactsim.fem.solvers.two_level.SERVICE", 1000)
+    for matrix in (pressed, 1.01 * pressed, pressed, free, free):
+        expected, computed = solved(direct, matrix, right), solved(solver, matrix, right, 1e-8)
+        np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-6 * np.abs(expected).max())
+        counts.append((len(made), solver.iterations))
+    assert [count for count, _ in counts] == [1, 1, 1, 2, 2]
+    assert counts[1][1] <= counts[0][1] + 2
+    monkeypatch.setattr("tactsim.fem.solvers.two_level.SERVICE", 1)
+    solved(solver, free, right, 1e-8)
+    assert len(made) == 3
+    direct.close()
+
+
+def test_a_coarse_factor_that_no_longer_fits_is_made_anew_before_the_iteration_gives_up(monkeypatch):
+    body, pressed, right = system((5, 5, 3))
+    free = system((5, 5, 3), contact=False)[1]
+    monkeypatch.setattr("tactsim.fem.solvers.two_level._Ruled.resembles", lambda self, other: True)
+    monkeypatch.setattr("tactsim.fem.solvers.block_preconditioner.RESTART", 30)
+    solver = BlockPreconditioned(body)
+    made = counted_factors(solver, monkeypatch)
+    solved(solver, free, right, 1e-8)
+    monkeypatch.setattr("tactsim.fem.solvers.two_level.TwoLevel.renew", lambda self: None)
+    with pytest.raises(ConvergenceError):
+        solved(solver, pressed, right, 1e-8)
+    monkeypatch.undo()
+    assert len(made) == 1
+    solved(solver, pressed, right, 1e-8)
+
+
+class Recording(BlockPreconditioned):
+    """Notes how accurate its solutions are to be."""
+
+    def __init__(self, body):
+        super().__init__(body)
+        self.asked = []
+
+    def solve(self, right, accuracy=0.0):
+        self.asked.append(accuracy)
+        return super().solve(right, accuracy)
+
+
+def test_newton_asks_for_three_digits_of_a_step_and_reaches_its_tolerance_nevertheless():
+    mesh = box(SIZE, (3, 3, 2))
+    body = body_of(mesh, "solid", RUBBER)
+    floor = np.concatenate([held(mesh, axis, on_plane(2, 0.0)) for axis in range(3)])
+    lid = held(mesh, 2, on_plane(2, SIZE[2]))
+    guess = np.zeros(body.space.size)
+    guess[lid] = -5e-4
+    found = {}
+    for name, solver in {"iteration": Recording(body), "factor": direct_solver()}.items():
+        found[name] = Problem(body, np.concatenate([floor, lid]), solver=solver).solve(guess)
+        assert found[name].history[-1] < 1e-10
+        if name == "iteration":
+            assert min(solver.asked) == FINEST_STEP
+    largest = np.abs(found["factor"].unknowns).max()
+    np.testing.assert_allclose(found["iteration"].unknowns, found["factor"].unknowns, rtol=0, atol=1e-8 * largest)
 
 
 def test_a_body_that_nothing_holds_is_an_error():
