@@ -125,21 +125,22 @@ def counted_factors(solver, monkeypatch):
     return made
 
 
-def test_a_coarse_factor_serves_until_contact_rules_other_nodes(monkeypatch):
+def test_a_coarse_factor_serves_until_contact_acts_otherwise(monkeypatch):
     body, pressed, right = system((5, 5, 3))
     free = system((5, 5, 3), contact=False)[1]
     solver, direct = BlockPreconditioned(body), direct_solver()
     made, counts = counted_factors(solver, monkeypatch), []
     monkeypatch.setattr("tactsim.fem.solvers.two_level.SERVICE", 1000)
-    for matrix in (pressed, 1.01 * pressed, pressed, free, free):
+    slipping = system((5, 5, 3), giving_way=0.2)[1]
+    for matrix in (pressed, 1.01 * pressed, pressed, slipping, free, free):
         expected, computed = solved(direct, matrix, right), solved(solver, matrix, right, 1e-8)
         np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-6 * np.abs(expected).max())
         counts.append((len(made), solver.iterations))
-    assert [count for count, _ in counts] == [1, 1, 1, 2, 2]
+    assert [count for count, _ in counts] == [1, 1, 1, 2, 3, 3]
     assert counts[1][1] <= counts[0][1] + 2
     monkeypatch.setattr("tactsim.fem.solvers.two_level.SERVICE", 1)
     solved(solver, free, right, 1e-8)
-    assert len(made) == 3
+    assert len(made) == 4
     direct.close()
 
 
