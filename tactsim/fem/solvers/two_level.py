@@ -94,9 +94,14 @@ class TwoLevel:
         if self._factored is None or self._cycles >= SERVICE or not self._now.resembles(self._factored):
             self._factor_coarse(self._now)
 
+    @property
+    def is_current(self) -> bool:
+        """Whether the coarse factor is that of the last matrix."""
+        return self._factored is self._now
+
     def renew(self) -> None:
         """Make the coarse factor of the last matrix, if it is that of an earlier one."""
-        if self._now is not None and self._factored is not self._now:
+        if self._now is not None and not self.is_current:
             self._factor_coarse(self._now)
 
     def _factor_coarse(self, now: _Ruled) -> None:

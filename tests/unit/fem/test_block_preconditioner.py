@@ -10,7 +10,7 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.newton import Problem
-from tactsim.fem.solvers.block_preconditioner import FINEST_STEP, BlockPreconditioned
+from tactsim.fem.solvers.block_preconditioner import FINEST_STEP, MOST_WITH_OLD, BlockPreconditioned
 from tactsim.fem.solvers.linear import LOOSENESS, SuperLU, direct_solver, solved
 from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso
 from tactsim.fem.solvers.reused_factor import ReusedFactor
@@ -128,27 +128,26 @@ def counted_factors(solver, monkeypatch):
 def test_a_coarse_factor_serves_until_contact_acts_otherwise(monkeypatch):
     body, pressed, right = system((5, 5, 3))
     free = system((5, 5, 3), contact=False)[1]
-    solver, direct = BlockPreconditioned(body), direct_solver()
+    solver = BlockPreconditioned(body)
     made, counts = counted_factors(solver, monkeypatch), []
     monkeypatch.setattr("tactsim.fem.solvers.two_level.SERVICE", 1000)
     slipping = system((5, 5, 3), giving_way=0.2)[1]
     for matrix in (pressed, 1.01 * pressed, pressed, slipping, free, free):
-        expected, computed = solved(direct, matrix, right), solved(solver, matrix, right, 1e-8)
-        np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-6 * np.abs(expected).max())
+        computed = solved(solver, matrix, right, FINEST_STEP)
+        assert np.abs(matrix @ computed - right).max() < LOOSENESS * FINEST_STEP * np.abs(right).max()
         counts.append((len(made), solver.iterations))
     assert [count for count, _ in counts] == [1, 1, 1, 2, 3, 3]
     assert counts[1][1] <= counts[0][1] + 2
     monkeypatch.setattr("tactsim.fem.solvers.two_level.SERVICE", 1)
-    solved(solver, free, right, 1e-8)
+    solved(solver, free, right, FINEST_STEP)
     assert len(made) == 4
-    direct.close()
 
 
 def test_a_coarse_factor_that_no_longer_fits_is_made_anew_before_the_iteration_gives_up(monkeypatch):
     body, pressed, right = system((5, 5, 3))
     free = system((5, 5, 3), contact=False)[1]
     monkeypatch.setattr("tactsim.fem.solvers.two_level._Ruled.resembles", lambda self, other: True)
-    monkeypatch.setattr("tactsim.fem.solvers.block_preconditioner.RESTART", 30)
+    monkeypatch.setattr("tactsim.fem.solvers.block_preconditioner.RESTART", 60)
     solver = BlockPreconditioned(body)
     made = counted_factors(solver, monkeypatch)
     solved(solver, free, right, 1e-8)
@@ -157,7 +156,8 @@ def test_a_coarse_factor_that_no_longer_fits_is_made_anew_before_the_iteration_g
         solved(solver, pressed, right, 1e-8)
     monkeypatch.undo()
     assert len(made) == 1
-    solved(solver, pressed, right, 1e-8)
+    solved(solver, pressed, right, 1e-2)
+    assert solver.iterations <= MOST_WITH_OLD + 1 + 10
 
 
 class Recording(BlockPreconditioned):
