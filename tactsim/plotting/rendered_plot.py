@@ -10,10 +10,10 @@ from matplotlib.figure import Figure
 from tactsim.errors import TactsimError
 from tactsim.plotting.canvas import encoded
 
-Begun = TypeVar("Begun")
+Made = TypeVar("Made")
 
 
-class RenderedPlot(Generic[Begun]):
+class RenderedPlot(Generic[Made]):
     """A figure that is drawn when it is wanted; what it has to wait for can be begun before.
 
     Parameters
@@ -22,9 +22,9 @@ class RenderedPlot(Generic[Begun]):
     drawn : the figure, around what ``begun`` returns
     """
 
-    def __init__(self, begun: Callable[[], Begun], drawn: Callable[[Begun], Figure]):
+    def __init__(self, begun: Callable[[], Made], drawn: Callable[[Made], Figure]):
         self._begun, self._drawn = begun, drawn
-        self._waiting: Begun | None = None
+        self._waiting: Made | None = None
 
     def begin(self) -> None:
         """Starts the rendering; if that fails, drawing tries again and says why."""
