@@ -5,10 +5,13 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable, Iterable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
 from tactsim.outside.text import one_line
+
+if TYPE_CHECKING:
+    from tactsim.refusals import Path as KeyPath
 
 NAME = "list"
 SUMMARY = "list shipped cases, sweeps, materials, kinds, estimators and tables"
@@ -23,7 +26,6 @@ examples:
   tactsim list kinds
 """
 Lines = Iterable[tuple[str, str]]
-KeyPath = tuple[str | int, ...]
 SCHEMA, TITLE, KIND = ("schema",), ("title",), ("experiment", "kind")
 """Where a file says what it is."""
 

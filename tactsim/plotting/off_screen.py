@@ -76,8 +76,12 @@ class Rendering:
         self.cameras = tuple(cameras)
         self._folder = tempfile.TemporaryDirectory()
         scene, self._drawn = Path(self._folder.name) / "scene.npz", Path(self._folder.name) / "pictures.npz"
-        _save(scene, surfaces, cameras)
-        self._child = Child(MODULE, [str(scene), str(self._drawn)], environment=ONE_THREAD)
+        try:
+            _save(scene, surfaces, cameras)
+            self._child = Child(MODULE, [str(scene), str(self._drawn)], environment=ONE_THREAD)
+        except BaseException:
+            self._folder.cleanup()
+            raise
         self._close = weakref.finalize(self, _closed, self._child, self._folder)
 
     def pictures(self) -> list[Array]:

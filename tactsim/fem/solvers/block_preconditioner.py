@@ -25,7 +25,7 @@ from tactsim.fem.solvers.tangent_blocks import TangentBlocks
 from tactsim.fem.solvers.two_level import TwoLevel
 
 RESTART = 80
-"""Search directions before a restart; the systems of a grasp need 30 to 60 for Newton's accuracy."""
+"""Search directions before a restart; the systems of a grasp need 4 to 30 for Newton's accuracy."""
 MOST_WITH_OLD = 20
 """Search directions with the coarse factor of an earlier system, before it is made anew: a hard state took 67 with it."""
 MOST_CYCLES = 6

@@ -107,7 +107,7 @@ class TwoLevel:
     def _factor_coarse(self, now: _Ruled) -> None:
         dim, block = self._dim, self._block
         count = block.shape[0] // dim
-        self._factored, self._cycles = now, 0
+        self._factored = None  # a factor that fails serves no later system
         graph = csr_matrix((np.ones(len(block.indices)), block.indices, block.indptr), shape=(count, count))
         prolongation = blocked(self._coarse_nodes(graph @ now.nodes.astype(float) > 0), now.free)
         coarse = (prolongation.T.tobsr((dim, dim)) @ (block @ prolongation)).tocsr().astype(float)
@@ -118,7 +118,7 @@ class TwoLevel:
         if self._pattern is None or not all(map(np.array_equal, self._pattern, pattern)):
             self._direct.close()  # contact rules other nodes; the analysis of a pattern takes as long as a factor
         self._direct.factor(coarse)
-        self._pattern = pattern
+        self._pattern, self._factored, self._cycles = pattern, now, 0
 
     def __call__(self, right: Array) -> Array:
         """One cycle for a right-hand side (n d,), beginning at zero."""

@@ -160,6 +160,22 @@ def test_a_coarse_factor_that_no_longer_fits_is_made_anew_before_the_iteration_g
     assert solver.iterations <= MOST_WITH_OLD + 1 + 10
 
 
+def test_a_coarse_factor_that_failed_serves_no_later_system(monkeypatch):
+    body, pressed, right = system((5, 5, 3))
+    solver = BlockPreconditioned(body)
+
+    def failing(matrix):
+        raise ConvergenceError("too large for single precision")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(solver._displacements._direct, "factor", failing)
+        with pytest.raises(ConvergenceError):
+            solved(solver, pressed, right, FINEST_STEP)
+    made = counted_factors(solver, monkeypatch)
+    solved(solver, pressed, right, FINEST_STEP)
+    assert len(made) == 1
+
+
 class Recording(BlockPreconditioned):
     """Notes how accurate its solutions are to be."""
 

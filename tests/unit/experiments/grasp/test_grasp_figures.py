@@ -311,6 +311,19 @@ def test_a_rendering_that_nobody_waits_for_leaves_nothing(monkeypatch):
     assert not Path(scene).parent.exists()
 
 
+def test_a_rendering_that_cannot_start_leaves_nothing(monkeypatch):
+    begun = []
+
+    def refused(module, arguments, **options):
+        begun.append(Path(arguments[0]).parent)
+        raise OSError("no more processes")
+
+    monkeypatch.setattr(off_screen, "Child", refused)
+    with pytest.raises(OSError, match="no more processes"):
+        off_screen.Rendering([], [])
+    assert not begun[0].exists()
+
+
 def test_view_names_what_it_shows(monkeypatch, frame):
     monkeypatch.setattr(grasp_view, "Rendering", Unrendered)
     result = made_up(frame=frame)
