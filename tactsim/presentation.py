@@ -13,8 +13,8 @@ from tactsim.interfaces.drawing import begin_all
 from tactsim.outside.text import one_line
 from tactsim.plotting import figures_for
 from tactsim.plotting.canvas import Figures, encoded, picture
-from tactsim.results import Result, read_result, write_result
-from tactsim.units import format_quantity
+from tactsim.results import Quantity, Result, read_result, write_result
+from tactsim.results.quantity import format_values
 
 if TYPE_CHECKING:
     import pyvista
@@ -23,7 +23,9 @@ if TYPE_CHECKING:
 CELL_TYPES = {"triangle": "TRIANGLE", "triangle6": "QUADRATIC_TRIANGLE", "tetra": "TETRA", "tetra10": "QUADRATIC_TETRA"}
 """Name of cells in a frame, as meshio has it -> as VTK has it."""
 LONGEST_TABLE = 12
-"""Quantities that a notebook lists; the others are counted."""
+"""Quantities that a notebook lists at once; the others unfold."""
+ANSWER = "threshold_pressure"
+"""What a run that has it was made for: it stands first."""
 
 
 def load_result(directory: str | Path) -> Result:
@@ -105,16 +107,21 @@ def html(result: Result) -> str:
     """Status, quantities, warnings and the main figure."""
     title = markup.escape(result.title or result.kind.replace("_", " "))
     lines = [f"<h4>{title}</h4>", f"<p><b>{result.status}</b>: {markup.escape(one_line(result.reason))}</p>"]
-    single = [(name, quantity) for name, quantity in result.quantities.items() if isinstance(quantity.value, int | float)]
-    rows = [
-        f"<tr><td><code>{markup.escape(name)}</code></td><td>{markup.escape(format_quantity(quantity.value, quantity.unit))}</td>"
-        f"<td style='text-align:left'>{markup.escape(quantity.description)}</td></tr>"
-        for name, quantity in single[:LONGEST_TABLE]
-    ]
-    left = len(result.quantities) - len(rows)
-    lines.append(f"<table>{''.join(rows)}</table>" + (f"<p>and {left} more in <code>quantities</code></p>" if left > 0 else ""))
+    rows = [_row(name, quantity) for name, quantity in sorted(result.quantities.items(), key=lambda item: item[0] != ANSWER)]
+    lines.append(f"<table>{''.join(rows[:LONGEST_TABLE])}</table>")
+    if more := rows[LONGEST_TABLE:]:
+        lines.append(
+            f"<details><summary>{len(more)} more in <code>quantities</code></summary><table>{''.join(more)}</table></details>"
+        )
     lines += [f"<p>warning: {markup.escape(one_line(warning))}</p>" for warning in result.warnings]
     first = next(iter(figures_for(result).values()), None)
     if first is not None:
         lines.append(picture(result.title or result.kind, first()))
     return "\n".join(lines)
+
+
+def _row(name: str, quantity: Quantity) -> str:
+    """Name, number with unit or range, and meaning of a quantity as a row of a table."""
+    left = "<td style='text-align:left'>"
+    words = (markup.escape(one_line(text)) for text in (format_values(quantity), quantity.description))
+    return f"<tr>{left}<code>{markup.escape(name)}</code></td>{''.join(f'{left}{word}</td>' for word in words)}</tr>"

@@ -6,6 +6,7 @@ Most cases hold nothing but plain units with prefixes, and pint takes a third of
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable
 from functools import cache, lru_cache
 from typing import Any
@@ -23,6 +24,9 @@ from tactsim.unit_definitions import (
 
 UNREADABLE = (ArithmeticError, ValueError, TypeError, AttributeError, AssertionError)
 """What pint raises, beside its own errors, on text that is no unit."""
+
+METRES_FIRST = re.compile(r"^(m)([·*])([^/·*]+)")
+"""A product that pint, which sorts by letters, begins with the metre: a torque in m·mN reads as one in millinewtons."""
 
 
 class OtherDimension(ValueError):
@@ -110,4 +114,5 @@ def compact(value: float, unit: str, style: str) -> tuple[float, str]:
     quantity = given.to_compact()
     if any(word.startswith(RARE_PREFIXES) for word, _ in quantity.unit_items()):
         quantity = given
-    return quantity.magnitude, format(quantity.units, f"~{style}")
+    text = format(quantity.units, f"~{style}")
+    return quantity.magnitude, METRES_FIRST.sub(r"\3\2\1", text)

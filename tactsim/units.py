@@ -36,6 +36,8 @@ _WORD = r"[cm]?mH2O|[^\W\d_]+(?:_[^\W\d_]+)*"
 _FACTOR = rf"(?:{_WORD})(?:(?:\*\*|\^)-?\d)?|[%°]"
 _UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:{_FACTOR})|\s+(?:{_FACTOR}))*")
 
+LONGEST_COUNT = 1e9
+"""Whole numbers below it are written with all their digits."""
 DECIMAL_POINT = "decimals begin with a point, not a comma"
 
 
@@ -140,13 +142,14 @@ def compact_unit(value: float, unit: str) -> str:
 
 
 def format_quantity(value: float, unit: str) -> str:
-    """``value`` in SI with an SI prefix chosen to read well: ``0.0008, "m"`` gives ``"0.8 mm"``; angles in degrees."""
+    """``value`` in SI with a prefix that reads well: ``0.0008, "m"`` gives ``"800 µm"``; angles in degrees, counts whole."""
     if unit in ("", "1"):
-        return f"{value:.4g}"
+        is_count = abs(value) < LONGEST_COUNT and value == round(value)
+        return str(round(value)) if is_count else f"{value:.4g}"
+    if unit == "rad" and math.isfinite(value):
+        return f"{math.degrees(value):.5g}°"
     if value == 0 or not math.isfinite(value):
         return f"{value:g} {unit}"
-    if unit == "rad":
-        return f"{math.degrees(value):.5g}°"
     number, compact_unit = compact(value, unit, "P")
     return f"{number:.5g} {compact_unit}"
 

@@ -202,6 +202,18 @@ def test_an_experiment_without_a_file_is_kept_too(tmp_path: Path) -> None:
     assert again.provenance["case"]["experiment"]["kind"] == "closed_form"
 
 
+def test_a_notebook_begins_with_the_threshold_and_unfolds_what_is_beyond_twelve(result: ts.Result) -> None:
+    """The threshold pressure was the thirteenth of an annulus, and of a grasp no taxel was listed."""
+    forces = ts.Quantity([[0.2, 0.3], [0.1, 0.4]], "N", "force on each taxel")
+    fillers = {f"filler_{k}": ts.Quantity(1.0, "m", "filler") for k in range(12)}
+    threshold = ts.Quantity(45e3, "Pa", "force over area")
+    html = replace(result, quantities={"taxel_force": forces, **fillers, "threshold_pressure": threshold})._repr_html_()
+    shown, hidden = html.split("<details>")
+    assert shown.index("threshold_pressure") < shown.index("45 kPa") < shown.index("taxel_force")
+    assert "2 x 2 values, 100 mN to 400 mN" in shown
+    assert ("2 more" in hidden, "filler_10" in shown, "filler_11" in hidden) == (True, False, True)
+
+
 def test_a_result_shows_itself(result: ts.Result) -> None:
     (name, figure), *_ = result.plot().items()
     assert (name, figure.get_size_inches()[0] > 3) == ("closed_form", True)

@@ -8,7 +8,8 @@ from pathlib import Path
 from typing import Any
 
 from tactsim.outside.text import one_line
-from tactsim.results import Quantity, Result, Status, StepRecord
+from tactsim.results import Result, Status, StepRecord
+from tactsim.results.quantity import ROUND_OFF, format_values
 from tactsim.units import format_quantity
 
 
@@ -55,30 +56,6 @@ def _ending(result: Result) -> str:
     return f"{result.status}: {reason}" if adds else reason or str(result.status)
 
 
-def format_values(quantity: Quantity) -> str:
-    """A number with its unit, or the shape and range of an array."""
-    import numpy as np
-
-    if quantity.value is None:
-        return "none"
-    values = np.array(quantity.value, dtype=float)
-    if values.ndim == 0:
-        return format_quantity(float(values), quantity.unit)
-    if values.ndim == 1 and values.size <= LISTED and np.isfinite(values).all():
-        values = np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(initial=0.0), 0.0, values)
-        return ", ".join(format_quantity(float(value), quantity.unit) for value in values)
-    finite = values[np.isfinite(values)]
-    shape = " x ".join(map(str, values.shape))
-    if not finite.size:
-        return f"{shape} values, none finite"
-    low, high = (format_quantity(float(bound), quantity.unit) for bound in (finite.min(), finite.max()))
-    return f"{shape} values, {low} to {high}" if low != high or finite.size < values.size else f"{shape} values, all {low}"
-
-
-LISTED = 4
-"""Values of a list that are all shown, such as a place."""
-ROUND_OFF = 1e-10
-"""Part of the largest component of a vector below which another is 0: no sum over 1e5 points solved to 1e-10 is better."""
 COMPONENT = re.compile(r"(.+)_[xyz]")
 """Name of a component of a vector."""
 VALUES_IN_A_LINE = 4
@@ -97,7 +74,7 @@ def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, f
     """
     shown = [name for name in units if name in record.values][:VALUES_IN_A_LINE] or list(record.values)
     values = [f"{name} {format_quantity(_without_round_off(name, record.values), units.get(name, ''))}" for name in shown]
-    share = record.values.get(extent[0], 0.0) / extent[1] if extent else 0.0
+    share = max(0.0, record.values.get(extent[0], 0.0) / extent[1]) if extent else 0.0
     reached = f" {share:4.0%}" if extent else ""
     solved = record.newton_iterations > 0 or record.residual > 0
     effort = [f"{record.newton_iterations} iterations, residual {record.residual:.1e}"] if solved else []

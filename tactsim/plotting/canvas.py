@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html as markup
 import io
+import re
 import textwrap
 from abc import abstractmethod
 from collections.abc import Callable, Iterator, Sequence
@@ -213,6 +214,11 @@ def scale_of(largest: float, unit: str) -> tuple[float, str]:
 def ink_on(colour: Sequence[float]) -> str:
     """Black or white, in which words are read on a colour of red, green and blue from 0 to 1."""
     return "k" if float(np.dot(colour[:3], LUMA)) > BRIGHT else "w"
+
+
+def with_minus(words: str) -> str:
+    """Numbers in words with the minus sign that axes have, not a hyphen."""
+    return re.sub(r"(?<![\w.])-(?=[\d.])", "−", words)
 
 
 def despined(axis: Axes) -> None:

@@ -8,10 +8,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from tactsim.units import conversion
+from tactsim.units import conversion, format_quantity
 
 if TYPE_CHECKING:
     import xarray
+
+LISTED = 4
+"""Values of a list that are all shown, such as a place."""
+ROUND_OFF = 1e-10
+"""Part of the largest component of a vector below which another is 0: no sum over 1e5 points solved to 1e-10 is better."""
 
 
 @dataclass(frozen=True)
@@ -100,3 +105,21 @@ def _formatted(value: Any, form: str) -> str:
     if isinstance(value, list | tuple | np.ndarray):
         return f"[{', '.join(_formatted(one, form) for one in value)}]"
     return format(np.nan if value is None else value, form)
+
+
+def format_values(quantity: Quantity) -> str:
+    """A number with its unit, or the shape and range of an array."""
+    if quantity.value is None:
+        return "none"
+    values = np.array(quantity.value, dtype=float)
+    if values.ndim == 0:
+        return format_quantity(float(values), quantity.unit)
+    if values.ndim == 1 and values.size <= LISTED and np.isfinite(values).all():
+        values = np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(initial=0.0), 0.0, values)
+        return ", ".join(format_quantity(float(value), quantity.unit) for value in values)
+    finite = values[np.isfinite(values)]
+    shape = " x ".join(map(str, values.shape))
+    if not finite.size:
+        return f"{shape} values, none finite"
+    low, high = (format_quantity(float(bound), quantity.unit) for bound in (finite.min(), finite.max()))
+    return f"{shape} values, {low} to {high}" if low != high or finite.size < values.size else f"{shape} values, all {low}"

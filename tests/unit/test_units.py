@@ -78,6 +78,11 @@ def test_values_are_printed_to_be_read() -> None:
     assert format_quantity(0.25, "1") == "0.25"
     assert format_quantity(math.radians(30), "rad") == "30°"
     assert format_quantity(0.0, "Pa") == "0 Pa"
+    assert format_quantity(0.0, "rad") == "0°"
+    assert format_quantity(43150.0, "1") == "43150"
+    assert format_quantity(3.0854, "N m") == "3.0854 N·m"
+    assert format_quantity(0.004, "N m") == "4 mN·m"
+    assert compact_unit(0.004, "N m") == "mN*m"
 
 
 @pytest.mark.parametrize("unit", ["m", "Pa", "m^2", "N", "rad", "Pa*s", "kg/m^3", "Pa/N"])

@@ -51,7 +51,9 @@ class DisplacedSetup(IndentationSetup):
 
     @property
     def extent(self) -> tuple[str, float]:
-        """The displacement, unless the threshold comes first."""
+        """What ends the run: the tissue's rise to the inner sensor, or the displacement."""
+        if self.stop == "threshold" and self.recess is not None:
+            return "tissue_rise", self.recess
         return "displacement", self.displacement
 
     @property

@@ -9,9 +9,10 @@ from pathlib import Path
 import pytest
 from pretence import pretended_result
 
-from tactsim.cli.report import format_values, last_line, result_report, step_line
+from tactsim.cli.report import last_line, result_report, step_line
 from tactsim.materials.library import LIBRARY
 from tactsim.results import Quantity, Result, Status, StepRecord
+from tactsim.results.quantity import format_values
 
 RESULT = pretended_result(Status.CONVERGED, "done", ())
 

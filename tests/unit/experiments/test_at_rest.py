@@ -77,7 +77,7 @@ def test_what_acts_on_a_body_stands_in_its_sketch() -> None:
     title = figure._suptitle.get_window_extent()
     assert not title.overlaps(legend.get_window_extent())
     turned = load_case("published_torsion").at_rest().plot("sketch")
-    assert [text.get_text() for text in turned.legends[0].get_texts()] == ["bottom: rotation 0 rad", "top: rotation 45°"]
+    assert [text.get_text() for text in turned.legends[0].get_texts()] == ["bottom: rotation 0°", "top: rotation 45°"]
 
 
 def test_a_kind_without_a_mesh_has_nothing_to_show() -> None:

@@ -8,7 +8,7 @@ import pytest
 
 from tactsim.cli import main
 from tactsim.experiments.localization.scene import ConfusionScene
-from tactsim.plotting.canvas import entitle, new_figure
+from tactsim.plotting.canvas import entitle, new_figure, with_minus
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status
 
@@ -47,3 +47,7 @@ def test_the_table_of_a_confusion_is_a_figure() -> None:
         scene=ConfusionScene(classes=classes, grasps=(), estimator="hypotheses"),
     )
     assert result.plot()["confusion"].get_suptitle() == "Confusion table: 3 of 4"
+
+
+def test_numbers_in_words_have_a_minus_sign_and_words_keep_their_hyphens() -> None:
+    assert with_minus("in this cut -1.01 to 23.2 kPa, B1-A, 1e-3") == "in this cut −1.01 to 23.2 kPa, B1-A, 1e-3"

@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tactsim.array import Array
 from tactsim.experiments.film.scene import CalibrationScene
-from tactsim.plotting.canvas import SingleFigure, despined, result_figure
+from tactsim.plotting.canvas import SingleFigure, despined, result_figure, with_minus
 from tactsim.results import Result
 from tactsim.sensors.electronics.calibration import MILLISIEMENS
 
@@ -96,7 +96,7 @@ def _draw_limit(axis: Axes, limit: float) -> None:
     """A limit of linearity in percent, with its number at the right."""
     axis.axhline(limit, color=LIMIT_COLOUR, linewidth=1, linestyle="--")
     axis.annotate(
-        f"{limit:+.3g} %",
+        with_minus(f"{limit:+.3g} %"),
         (1.0, limit),
         xycoords=("axes fraction", "data"),
         xytext=(3, 0),

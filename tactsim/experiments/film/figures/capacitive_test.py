@@ -19,7 +19,7 @@ def capacitive_test_figure(result: Result) -> Figure:
         axes = np.atleast_1d(figure.subplots(1, 3 if amplified else 2))
         axes[0].plot(forces, capacitance, "o-", color=DATA, markersize=3, label="film")
         slope, intercept = (1e12 * float(result.quantities[f"line_{part}"].value) for part in ("slope", "intercept"))
-        label = f"C = {slope:.4g} pF/N · F {intercept:+.4g} pF"
+        label = f"C = {slope:.4g} pF/N · F {'−' if intercept < 0 else '+'} {abs(intercept):.4g} pF"
         ends = np.array([0.0, forces[-1]])
         axes[0].plot(ends, slope * ends + intercept, "--", color=LINE, label=label)
         axes[0].set(xlabel="force in N", ylabel="capacitance in pF", ylim=(0, None))

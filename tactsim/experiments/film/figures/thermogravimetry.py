@@ -13,6 +13,7 @@ from tactsim.plotting.canvas import SingleFigure, despined, result_figure
 from tactsim.results import Result
 
 CURVE, POINT = "#1f4e79", "#b8540a"
+BARS = (POINT, CURVE, "#2e7d32", "#6a1b9a")
 SHORT = {"masses": "masses", "filler_density": "filler's density", "matrix_density": "matrix's density"}
 REACH = 1.25
 """The curve goes beyond the densities by this factor."""
@@ -59,7 +60,7 @@ def _draw_parts(axis: Axes, result: Result) -> None:
     for number, reading in enumerate(readings):
         values = [reading.contributions[name] for name in SHORT]
         places = np.arange(len(values)) + (number - (len(readings) - 1) / 2) * width
-        bars = axis.barh(places, values, width * 0.9, label=reading.name)
+        bars = axis.barh(places, values, width * 0.9, color=BARS[number % len(BARS)], label=reading.name)
         axis.bar_label(bars, [f"{value:.1e}" if value else "0" for value in values], padding=3, fontsize=8)
     axis.set_yticks(np.arange(len(SHORT)), list(SHORT.values()))
     axis.set_xscale("log")
@@ -67,5 +68,5 @@ def _draw_parts(axis: Axes, result: Result) -> None:
     axis.set_xlim(most / 1e4 if most else 1e-6, 20 * most if most else 1.0)
     axis.invert_yaxis()
     axis.set_xlabel("standard uncertainty of the fraction by volume")
-    axis.set_title("where it comes from", loc="left")
+    axis.set_title("what makes it uncertain", loc="left")
     axis.legend(loc="lower right")

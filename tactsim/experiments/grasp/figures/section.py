@@ -14,7 +14,7 @@ from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, ending, inclusions_of, moment_of
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, robust_limits, scale_of
+from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, robust_limits, scale_of, with_minus
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut, regions_of
 from tactsim.results import FieldFrame, Result
 from tactsim.results.fields import CORNER_PRESSURE, PRESSURE
@@ -94,7 +94,7 @@ def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
     drawn = axis.tripcolor(mesh, values, **style)
     extend = extension(values, (low, high))
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.7, aspect=36, pad=0.02)
-    extremes = f"in this cut {values.min():.3g} to {values.max():.3g} {unit}"
+    extremes = with_minus(f"in this cut {values.min():.3g} to {values.max():.3g} {unit}")
     words = "as computed: it varies linearly within an element, so that steep changes show the elements"
     bar.set_label(f"pressure in the tissue in {unit} (colours: 1st to 99th percentile of the area; {extremes})\n{words}")
     bar.outline.set_linewidth(0.5)

@@ -13,7 +13,7 @@ from matplotlib.patches import Patch
 from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
-from tactsim.plotting.canvas import REGION_COLOURS, extension, robust_limits, scale_of
+from tactsim.plotting.canvas import REGION_COLOURS, extension, robust_limits, scale_of, with_minus
 from tactsim.plotting.plane_cut import QUARTERS
 from tactsim.results import FieldFrame
 from tactsim.results.fields import DISPLACEMENT, REGION
@@ -73,7 +73,7 @@ def pressure_bar(axis: Axes, drawn: Any, pressure: Array, limits: tuple[float, f
     """The colours of a pressure (n,) in a unit, pointed where values lie beyond the limits of the colours."""
     extend = extension(pressure, limits)
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.6, aspect=32, pad=0.02)
-    ends = [f"{float(f'{end:.3g}'):g}".replace("-", "−") for end in (pressure.min(), pressure.max())]
+    ends = [with_minus(f"{float(f'{end:.3g}'):g}") for end in (pressure.min(), pressure.max())]
     beyond = {"neither": "", "min": f"down to {ends[0]}", "max": f"up to {ends[1]}", "both": f"from {ends[0]} to {ends[1]}"}
     arrows = f"\narrows: what lies beyond them, {beyond[extend]} {unit}" if beyond[extend] else ""
     bar.set_label(f"pressure in {unit} (colours: 1st to 99th percentile of the area){arrows}")

@@ -15,7 +15,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, result_figure, scale_of
+from tactsim.plotting.canvas import Plot, despined, result_figure, scale_of, with_minus
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -123,7 +123,7 @@ def _label(result: Result, place: tuple[int, int, int]) -> str:
     spread = np.isfinite(deviation) and deviation > 0
     digits = max(0, 1 - int(np.floor(np.log10(deviation)))) if spread else 0
     plain = f"{mean:+.{digits}f}" if spread else f"{mean:+.3g}"
-    lines = [plain if np.isfinite(mean) else "none"]
+    lines = [with_minus(plain) if np.isfinite(mean) else "none"]
     if spread:
         lines.append(f"± {deviation:.{digits}f}")
     for name, words in (("false_rate", "false"), ("missed_rate", "missed"), ("saturated_rate", "saturated")):

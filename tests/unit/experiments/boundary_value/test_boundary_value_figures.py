@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from pretence import pretended_result
 from skfem import MeshTri
 
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
-from tactsim.experiments.boundary_value.figures import draw_body
+from tactsim.experiments.boundary_value.figures.boundary_value_problem import draw_body
+from tactsim.experiments.boundary_value.figures.course import draw_course
+from tactsim.experiments.boundary_value.scene import BoundaryValueScene
 from tactsim.plotting.canvas import new_figure
-from tactsim.results import FieldFrame
+from tactsim.results import FieldFrame, Status, StepRecord
 from tactsim.results.fields import DISPLACEMENT, VON_MISES
 
 
@@ -51,3 +56,31 @@ def test_curves_are_told_apart_without_colour() -> None:
     *_, course = (axis for axis in BoundaryValueProblem.example().run().plot("boundary_value_problem").axes if axis.get_legend())
     curves = course.get_legend().get_lines()
     assert len({(curve.get_linestyle(), curve.get_marker()) for curve in curves}) == len(curves) > 1
+
+
+def test_the_picture_of_a_speck_ends_where_the_body_does() -> None:
+    """Half the picture of a disc on a half-space was empty."""
+    axis = drawn(1.0, 1e-3)
+    (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
+    assert -0.2 * (right - left) < left <= 0
+    assert 1e3 <= top < 1e3 + 0.2 * (top - bottom)
+
+
+@pytest.mark.parametrize(
+    ("asked", "label", "largest"),
+    [
+        ({"force": "N"}, "force in kN", 2.0),
+        ({"force": "N", "force_at_end": "N"}, "in kN", 2.0),
+        ({"force": "N", "slip": "m"}, "quantity / its largest magnitude", 1.0),
+    ],
+)
+def test_a_single_course_is_drawn_in_its_unit(asked: dict[str, str], label: str, largest: float) -> None:
+    """A force over its own largest magnitude says nothing."""
+    values = [{"time": float(k), "force": 1e3 * k, "force_at_end": 1e3 * k, "slip": 2e-6 * k} for k in (1, 2)]
+    steps = tuple(StepRecord(k, 1, 0.0, value) for k, value in enumerate(values, 1))
+    result = replace(pretended_result(Status.CONVERGED, "done", ()), steps=steps)
+    axis = new_figure(5, 4).add_subplot()
+    draw_course(axis, result, BoundaryValueScene.model_construct(asked=asked))
+    assert axis.get_ylabel() == label
+    (curve,) = [line for line in axis.lines if len(line.get_xdata()) == 2 and line.get_marker() == "."]
+    assert np.max(curve.get_ydata()) == largest

@@ -197,3 +197,12 @@ def test_impossible_experiments_are_refused(changes, words):
 def test_impossible_specimens_are_refused(changes, words):
     with pytest.raises(CaseError, match=words):
         Specimen(**({"material": SOFT, "thickness": 3e-3, "radius": 7e-3} | changes))
+
+
+def test_a_run_to_the_threshold_is_as_far_as_the_tissue_has_risen() -> None:
+    """By the largest displacement that is tried, a run that was done showed 11 % and hours to go."""
+    example = Indentation.example()
+    assert example.stop == "threshold"
+    assert example.extent == ("tissue_rise", example.recess)
+    further = example.model_copy(update={"stop": "displacement"})
+    assert further.extent == ("displacement", example.displacement)

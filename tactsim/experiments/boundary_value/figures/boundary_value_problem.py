@@ -13,6 +13,7 @@ from tactsim.array import Array
 from tactsim.contact.turned import Turned
 from tactsim.experiments.boundary_value.asked import place_in_words
 from tactsim.experiments.boundary_value.conditions import AnyCondition, PointCondition
+from tactsim.experiments.boundary_value.figures.course import draw_course
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
@@ -40,15 +41,11 @@ VIEW = np.array([0.55, -0.75, 0.40])
 """Direction from a body in space to the eye."""
 RIGID_COLOUR, GRID = "#c8ccd2", 250
 """Of a rigid body, and the points per direction on which its outline is traced."""
-COURSES = (".-", "s--", "^:", "d-.", "x-", "v--")
-"""Marks and lines of the curves in the second panel, which print in grey tells apart."""
-ALIKE = 5e-3
-"""Curves of a largest magnitude of one that differ by less are drawn as one."""
 STRESSED, SPECK = 0.1, 0.15
 """Part of the top of the colours from which a place counts as stressed, and part of the body's size below which such places are a
 speck in its picture."""
-LONGEST_LINEAR = 1e3
-"""Ratio of the last to the first positive time above which the time is drawn on a logarithmic axis."""
+RIM = 0.15
+"""What is shown beside the body's edge there, over the size of the stressed part."""
 
 
 class BoundaryValueFigures(SingleFigure):
@@ -64,8 +61,11 @@ class BoundaryValueFigures(SingleFigure):
         """The deformed body of the last frame, if there is one, and the numbers that were asked for over time."""
         scene, body = result.scene_as(BoundaryValueScene), bool(result.frames)
         where = f" at {format_quantity(result.steps[-1].values['time'], 's')}"
-        with result_figure(result, (10.0 if body else 6.0, 4.2), TITLE, where=where) as figure:
-            axes = figure.subplots(1, 1 + body, squeeze=False, width_ratios=(1.2, 1) if body else None)[0]
+        with result_figure(
+            result, ((10.0 if len(result.steps) > 1 else 8.0) if body else 6.0, 4.2), TITLE, where=where
+        ) as figure:
+            ratios = (1.2, 1.0 if len(result.steps) > 1 else 0.5)
+            axes = figure.subplots(1, 1 + body, squeeze=False, width_ratios=ratios if body else None)[0]
             if body:
                 draw_body(axes[0], result.frames[-1], scene.dimension)
             draw_course(axes[-1], result, scene)
@@ -154,7 +154,7 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
     axis.autoscale_view()
     words = f"deformed, at {format_quantity(frame.time, 's')}"
     stressed = values > STRESSED * robust_limits(values, weights)[1]
-    if dimension != "3d" and _frame_stressed(axis, corners[stressed]):
+    if dimension != "3d" and _frame_stressed(axis, corners[stressed], corners):
         words += "; the stressed part"
         weights = _areas_shown(axis, corners)
     shown = weights > 0
@@ -169,17 +169,19 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
     _framed(axis, dimension)
 
 
-def _frame_stressed(axis: Axes, corners: Array) -> bool:
-    """Show the neighbourhood of these triangles (n, 3, 2) alone if they are a speck of the body, as under a punch; whether so."""
-    if not len(corners):
+def _frame_stressed(axis: Axes, stressed: Array, body: Array) -> bool:
+    """Show the neighbourhood of the stressed ones of a body's triangles (n, 3, 2) alone if they are a speck of it, as under a
+    punch, and of what lies beside it a rim; whether so.
+    """
+    if not len(stressed):
         return False
-    least, most = corners.min(axis=(0, 1)), corners.max(axis=(0, 1))
-    whole = np.array([axis.get_xlim(), axis.get_ylim()])
+    least, most = stressed.min(axis=(0, 1)), stressed.max(axis=(0, 1))
+    first, last = body.min(axis=(0, 1)), body.max(axis=(0, 1))
     reach = float((most - least).max())
-    if reach > SPECK * float(np.ptp(whole, axis=1).max()):
+    if reach > SPECK * float((last - first).max()):
         return False
     middle = (least + most) / 2
-    low, high = np.maximum(middle - 1.5 * reach, whole[:, 0]), np.minimum(middle + 1.5 * reach, whole[:, 1])
+    low, high = np.maximum(middle - 1.5 * reach, first - RIM * reach), np.minimum(middle + 1.5 * reach, last + RIM * reach)
     axis.set(xlim=(low[0], high[0]), ylim=(low[1], high[1]))
     return True
 
@@ -201,42 +203,6 @@ def _framed(axis: Axes, dimension: str) -> None:
         names = ("r", "z") if dimension == "axisymmetric" else ("x", "y")
         axis.set(xlabel=f"{names[0]} in mm", ylabel=f"{names[1]} in mm")
         despined(axis)
-
-
-def draw_course(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
-    """What was asked for over time, each number over its largest magnitude; of a single time, the numbers themselves."""
-    time = np.asarray(result.history_values("time"))
-    if len(time) == 1:
-        _write_numbers(axis, result, scene)
-        return
-    curves: list[tuple[Array, list[str]]] = []
-    for name in list(scene.asked)[: len(COURSES)]:
-        values = np.asarray(result.history_values(name))
-        most = float(np.abs(values).max())
-        label, course = f"{name} / {format_quantity(most, scene.asked[name])}", values / (most or 1.0)
-        alike = [labels for other, labels in curves if np.abs(other - course).max() < ALIKE]
-        if alike:
-            alike[0].append(label)
-        else:
-            curves.append((course, [label]))
-    for (course, labels), style in zip(curves, COURSES, strict=False):
-        axis.plot(time, course, style, markersize=3, label="\n".join(labels))
-    positive = time[time > 0]
-    if len(positive) and positive[-1] > LONGEST_LINEAR * positive[0]:
-        axis.set_xscale("log")
-    axis.axhline(0.0, color="k", linewidth=0.5)
-    axis.set(xlabel="time in s", ylabel="quantity / its largest magnitude")
-    axis.legend(fontsize=7)
-    despined(axis)
-
-
-def _write_numbers(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
-    """What was asked for at the only time there is, a line each."""
-    last = result.steps[-1].values
-    lines = [f"{name}: {format_quantity(last[name], unit)}" for name, unit in scene.asked.items()]
-    axis.text(0.0, 1.0, "\n".join(lines), transform=axis.transAxes, ha="left", va="top", linespacing=1.7)
-    axis.set_title(f"at {format_quantity(last['time'], 's')}", loc="left")
-    axis.set_axis_off()
 
 
 def _section(frame: FieldFrame) -> tuple[Array, Array]:

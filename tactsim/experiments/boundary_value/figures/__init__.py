@@ -1,0 +1,1 @@
+"""The figures of boundary value problems."""
