@@ -65,7 +65,9 @@ def _commands(parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.A
     """Name and parser of every command, and of what a command such as ``data`` does."""
     for action in parser._get_positional_actions():
         if isinstance(action, argparse._SubParsersAction):
-            for name, sub in action.choices.items():
+            for entry in action._choices_actions:
+                name, sub = entry.dest, action.choices[entry.dest]
+                sub.description = entry.help  # a line; of a longer description the shells show the beginning
                 yield name, sub
                 yield from _commands(sub)
 

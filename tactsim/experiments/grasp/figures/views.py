@@ -40,6 +40,11 @@ ESTIMATE = "#d1242f"
 MOST_NAMED = 8
 """Taxels along a jaw up to which each is numbered."""
 
+NUMBERS_TOP, LINE_HEIGHT, CLOSEST = 0.5, 0.041, 0.75
+"""Top of the numbers of the taxels and height of a line of the findings, over the height of the axes, and the least part of that
+height on which lines stay apart; beyond it the letters shrink.
+"""
+
 
 @dataclass(frozen=True, eq=False)
 class View:
@@ -257,6 +262,9 @@ def _legend(axis: Axes, grasp: ViewedGrasp) -> None:
         handles.append(Line2D([], [], color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, label=words))
     axis.legend(handles=handles, loc="upper left", borderaxespad=0.0)
     below = 0.98 - 0.046 * len(handles)
-    axis.text(0.0, below, "\n".join(grasp.findings), transform=axis.transAxes, va="top", fontsize=8.5, linespacing=1.5)
-    if max(grasp.signal.shape[1:]) <= MOST_NAMED:
+    numbered = max(grasp.signal.shape[1:]) <= MOST_NAMED
+    room = (below - (NUMBERS_TOP if numbered else 0.0)) / max(LINE_HEIGHT * len(grasp.findings), LINE_HEIGHT)
+    style: dict[str, Any] = {"fontsize": 8.5 * min(1.0, room / CLOSEST), "linespacing": 1.5 * float(np.clip(room, CLOSEST, 1.0))}
+    axis.text(0.0, below, "\n".join(grasp.findings), transform=axis.transAxes, va="top", **style)
+    if numbered:
         draw_taxel_numbers(axis, grasp)

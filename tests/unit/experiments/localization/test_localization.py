@@ -118,6 +118,16 @@ def test_the_views_show_the_true_and_the_estimated_place(folders, monkeypatch):
     assert row < 30
 
 
+def test_many_words_about_an_estimate_end_above_the_numbers_of_the_taxels(folders):
+    """The last of seven lines about two lumps lay on the heading below."""
+    result = run(folders)
+    grasp = replace(localized(result), findings=tuple(f"line {k} of what was estimated" for k in range(9)))
+    figure = views_figure(result, grasp)
+    figure.draw_without_rendering()
+    texts = {text.get_text().split("\n")[0][:10]: text.get_window_extent() for axis in figure.axes for text in axis.texts}
+    assert texts["line 0 of "].y0 > texts["what each "].y1
+
+
 def test_the_views_write_what_each_taxel_reads_with_its_row_and_column(folders):
     result = run(folders)
     figure = views_figure(result, localized(result))
