@@ -98,14 +98,15 @@ def unusual_word(words: Iterable[str]) -> str | None:
 
 
 def compact(value: float, unit: str, style: str) -> tuple[float, str]:
-    """A value that is not 0, with the SI prefix in which it reads well, from p to G; nobody speaks of megaseconds.
+    """A value that is not 0, with the SI prefix in which it reads well, from p to G; nobody speaks of megaseconds, and
+    a millipascal is a letter from a megapascal.
 
     Parameters
     ----------
     value : in ``unit``, which is one of SI
     style : how pint writes a unit: P for people (mm²), C in ASCII but for µ (mm**2)
     """
-    if unit == "s" and abs(value) >= 1:
+    if (unit == "s" and abs(value) >= 1) or (unit == "Pa" and 1e-3 <= abs(value) < 1):
         return value, unit
     if unit in PLAIN:
         power = 3 * math.floor(math.log10(abs(value)) / 3)

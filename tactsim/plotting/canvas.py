@@ -178,7 +178,7 @@ def result_figure(
 
 def _mark_failure(figure: Figure, result: Result, where: str) -> None:
     """Writes status and reason across the foot, in up to four lines above the figure's legends, and draws a coloured frame."""
-    words = f"{str(result.status).upper()}{where}: {result.reason}"
+    words = f"{str(result.status).upper()}{where}: {result.reason.removeprefix(f'{result.status}; ')}"
     lines = textwrap.wrap(words, int(LETTERS_PER_INCH * figure.get_figwidth()), max_lines=4, placeholder=" …")
     legends = max((legend.get_window_extent().height / figure.dpi for legend in figure.legends), default=0.0)
     lines += [""] * int(np.ceil(LINES_PER_INCH * legends))
@@ -204,10 +204,10 @@ class SingleFigure(ResultFigures):
 
 
 def scale_of(largest: float, unit: str) -> tuple[float, str]:
-    """Factor and prefixed unit in which a size in SI reads well, like ``(1e3, "mm")``."""
+    """Factor and prefixed unit in which a size in SI reads well, like ``(1e3, "mm")``; never mPa, a letter from MPa."""
     for exponent, prefix in ((6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n")):
         if largest >= 10.0**exponent:
-            return 10.0**-exponent, f"{prefix}{unit}"
+            return (1.0, unit) if prefix + unit == "mPa" else (10.0**-exponent, f"{prefix}{unit}")
     return 1.0, unit
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from tactsim.cli import main
 from tactsim.experiments.localization.scene import ConfusionScene
-from tactsim.plotting.canvas import entitle, new_figure, with_minus
+from tactsim.plotting.canvas import entitle, new_figure, result_figure, with_minus
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status
 
@@ -51,3 +51,10 @@ def test_the_table_of_a_confusion_is_a_figure() -> None:
 
 def test_numbers_in_words_have_a_minus_sign_and_words_keep_their_hyphens() -> None:
     assert with_minus("in this cut -1.01 to 23.2 kPa, B1-A, 1e-3") == "in this cut −1.01 to 23.2 kPa, B1-A, 1e-3"
+
+
+def test_the_foot_of_an_interrupted_run_says_so_once() -> None:
+    stopped = Result(kind="grasp", status=Status.INTERRUPTED, reason="interrupted; the accepted steps are kept", quantities={})
+    with result_figure(stopped, (6.0, 3.0), where=" at 2 s") as figure:
+        pass
+    assert figure.get_supxlabel() == "INTERRUPTED at 2 s: the accepted steps are kept"

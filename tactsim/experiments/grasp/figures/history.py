@@ -55,6 +55,9 @@ def draw_histories(axes: Sequence[Axes], result: Result) -> None:
         if 0 < low < FROM_ZERO * high:
             axis.set_ylim(bottom=0.0)
         despined(axis)
+    ends = np.array([axis.get_xlim() for axis in axes])
+    for axis in axes:
+        axis.set_xlim(ends[:, 0].min(), ends[:, 1].max())
     for axis in axes[:-1]:
         axis.tick_params(labelbottom=False)
     axes[-1].set_xlabel(words)

@@ -229,6 +229,11 @@ def test_figures_show_what_is_seen(frame):
         assert words in course
 
 
+def test_the_panels_of_a_history_have_one_axis_of_time():
+    """The forces begin at rest, the pressure in an artery at the first step: a pulse seemed to come before its forces."""
+    assert len({axis.get_xlim() for axis in history_figure(made_up()).axes}) == 1
+
+
 def test_history_without_time_is_over_the_closing():
     result = made_up()
     steps = tuple(replace(s, values={n: v for n, v in s.values.items() if n != "time"}) for s in result.steps)
