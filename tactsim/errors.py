@@ -124,10 +124,16 @@ class StorageError(TactsimError, OSError):
     exit_code = 5
 
 
+MOST_SUGGESTED = 3
+"""Names that a message suggests instead of the beginning of theirs."""
+
+
 def suggestion(name: str, allowed: Iterable[str]) -> str:
-    """``" (did you mean 'radius'?)"`` if an allowed name is near, else an empty string."""
-    near = difflib.get_close_matches(name[:100], list(allowed), n=1, cutoff=0.6)
-    return f" (did you mean {near[0]!r}?)" if near else ""
+    """``" (did you mean 'radius'?)"`` if an allowed name is near, those that begin with its words, else an empty string."""
+    names = list(allowed)
+    near = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.6)
+    near = near or sorted(other for other in names if name and other.startswith(f"{name}_"))[:MOST_SUGGESTED]
+    return f" (did you mean {' or '.join(map(repr, near))}?)" if near else ""
 
 
 def shown(value: Any) -> str:

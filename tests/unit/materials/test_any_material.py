@@ -51,6 +51,7 @@ def test_a_material_passes_as_it_is():
     ("value", "words"),
     [
         ("icf_stabel", "did you mean 'icf_stable'"),
+        ("icf", "did you mean 'icf_printed' or 'icf_stable'"),
         ({"set": "icf_stabel"}, "did you mean 'icf_stable'"),
         ({"kind": "neo_hokean", "c10": "3 kPa"}, "unknown material kind 'neo_hokean' .did you mean 'neo_hookean'"),
         ({"kind": "neo_hookean", "c10": 3.0}, "has no unit"),
