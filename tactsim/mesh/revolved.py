@@ -124,11 +124,9 @@ def _rounded(straight: QuadraticMesh, section: QuadraticMesh, places: Array, *, 
 def _middles(section: QuadraticMesh, pairs: Array) -> Array:
     """The section's node (n,) between two of its corners (n, 2), which may be the same."""
     count = section.corner_count
-    edges = np.sort(section.elements[:, [[0, 1], [1, 2], [0, 2]]].reshape(-1, 2), axis=1)
-    keys, first = np.unique(edges[:, 0] * count + edges[:, 1], return_index=True)
-    known = section.elements[:, 3:].ravel()[first]
-    pairs = np.sort(pairs, axis=1)
-    at = np.minimum(np.searchsorted(keys, pairs[:, 0] * count + pairs[:, 1]), len(keys) - 1)
+    (edges, known), pairs = section.edges(), np.sort(pairs, axis=1)
+    keys = edges @ [count, 1]
+    at = np.minimum(np.searchsorted(keys, pairs @ [count, 1]), len(keys) - 1)
     return np.where(pairs[:, 0] == pairs[:, 1], pairs[:, 0], known[at])
 
 
