@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 from mutants import assert_kills
 
 from tactsim.case import load_case
@@ -87,7 +87,7 @@ def test_the_case_with_both_densities():
     for number, (low, high) in enumerate(zip(*_exponents(result), strict=True)):
         assert result.quantities["exponent_deviation"].value[number] == pytest.approx(abs(high - low) / 2, rel=2e-3)
     assert any("E27" in warning for warning in result.warnings)
-    words = " ".join(text.get_text() for text in ThermogravimetryFigures().figure(result).findobj(Text))
+    words = text_of(ThermogravimetryFigures().figure(result))
     assert "bulk: 0.2875" in words
     assert list(figures_for(result)) == ["thermogravimetry.png"]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 
 from tactsim.case import load_case
 from tactsim.contact.trapezoid import Trapezoid
@@ -128,12 +128,12 @@ def test_figures(three):
     drawings = figures_for(three)
     assert list(drawings) == ["force_over_depth.png", "switch_panel.png", "tissues_by_rate.png"]
     assert all(draw().startswith(b"\x89PNG") for draw in drawings.values())
-    written = " ".join(text.get_text() for text in switch_panel_figure(three).findobj(Text))
+    written = text_of(switch_panel_figure(three))
     for words in ("mean rate 1.02", "force sensor", "tissue 1 at 1 mm/s"):
         assert words in written
     single = probe(sides="computed").run()
     assert list(figures_for(single)) == ["force_over_depth.png", "switch_panel.png"]
-    written = " ".join(text.get_text() for text in switch_panel_figure(single).findobj(Text))
+    written = text_of(switch_panel_figure(single))
     assert "not every switch closed" in written
 
 
