@@ -9,7 +9,7 @@ from tactsim.array import Array
 from tactsim.fem.paths.states import PathState, between
 
 MOST_ESTIMATES = 4
-"""Interpolations in a row; if they have not found the root, the bracket is halved by turns."""
+"""Interpolations in a row; if they have not found the root, every other step halves the bracket."""
 
 
 State = TypeVar("State", bound=PathState)
