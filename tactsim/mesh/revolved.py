@@ -132,9 +132,15 @@ def _middles(section: QuadraticMesh, pairs: Array) -> Array:
 
 def _turned(nodes: Array, angles: Array) -> Array:
     """Points (n, 3) in m of section nodes (n, 2) turned by angles in rad; exact at multiples of a right angle."""
-    cosine, sine = np.cos(angles), np.sin(angles)
+    return np.column_stack([polar(np.column_stack([nodes[:, 0], angles])), nodes[:, 1]])
+
+
+def polar(nodes: Array) -> Array:
+    """Places (n, 2) in the plane of nodes (n, 2) given by radius in m and angle in rad; exact on both axes."""
+    r, angle = nodes.T
+    cosine, sine = np.cos(angle), np.sin(angle)
     cosine, sine = (np.where(np.abs(part) < 1e-14, 0.0, part) for part in (cosine, sine))
-    return np.stack([nodes[:, 0] * cosine, nodes[:, 0] * sine, nodes[:, 1]], axis=1)
+    return np.column_stack([r * cosine, r * sine])
 
 
 def shifted_outside(nodes: Array, offset: float, *, radius: float, rest: float) -> Array:

@@ -103,14 +103,6 @@ def _twelve_to_a_cell(lines: Sequence[Array]) -> QuadraticMesh:
     return quadratic_mesh(corners, simplices)
 
 
-def polar(nodes: Array) -> Array:
-    """Places (n, 2) in the plane of nodes (n, 2) given by radius in m and angle in rad; exact on both axes."""
-    r, angle = nodes.T
-    cosine, sine = np.cos(angle), np.sin(angle)
-    cosine, sine = (np.where(np.abs(part) < 1e-14, 0.0, part) for part in (cosine, sine))
-    return np.column_stack([r * cosine, r * sine])
-
-
 def quarter_disc(nodes: Array) -> Array:
     r"""Places (n, 2) in a quarter of the unit disc of nodes (n, 2) in the unit square, whose far sides become the circle.
 
