@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from drawn import text_of
@@ -17,9 +15,9 @@ from tactsim.plotting import figures_for
 from tactsim.sensors.films.composite_library import named_composite
 from tactsim.sensors.films.film import Film
 from tactsim.sensors.films.thermogravimetry import Thermogravimetry
+from tactsim.shipped import CASES
 from tactsim.validation.quantities.film import filler_fraction_deviation
 
-CASES = Path(__file__).parents[4] / "cases"
 MILLIGRAM = 1e-6
 LINGSTAT = {"sample_mass": 21.158 * MILLIGRAM, "filler_mass": 4.2083 * MILLIGRAM}
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from drawn import text_of
@@ -26,8 +24,8 @@ from tactsim.results.document import document_text
 from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.sensors.switch_array import SwitchArray
+from tactsim.shipped import CASES
 
-CASES = Path(__file__).parents[4] / "cases"
 COARSE = {"mesh": MeshSettings(finest=0.4e-3, growth=0.8), "time": TimeSettings(tolerance=0.05, per_decade=0)}
 pytestmark = pytest.mark.usefixtures("one_thread")
 
