@@ -88,7 +88,7 @@ def grid_domain(lines: Sequence[Array], faces: Sequence[tuple[str, str]], mirror
 def _crossed(lines: Sequence[Array]) -> QuadraticMesh:
     """Four triangles for each cell, around its middle."""
     nx, ny = (len(line) for line in lines)
-    corners = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+    corners = product(lines)
     index = np.arange(nx * ny).reshape(nx, ny)
     around = np.stack([index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]], axis=-1).reshape(-1, 4)
     middles = len(corners) + np.arange(len(around))
