@@ -16,15 +16,13 @@ from contextlib import redirect_stderr
 from pathlib import Path
 from typing import Any
 
+import pretence
 import pytest
+from fork_server import forked_pretended_command, share
+
+from tactsim.registry import forget, registered_outside
 
 TESTS = Path(__file__).parent
-sys.path.insert(0, str(TESTS))
-
-import pretence  # noqa: E402  it stands beside this file, which the line above makes known
-from fork_server import forked_pretended_command, share  # noqa: E402
-
-from tactsim.registry import forget, registered_outside  # noqa: E402
 
 
 def _forget_classes_of_tests() -> None:

@@ -1,9 +1,15 @@
-"""What a drawn figure covers."""
+"""What a drawn figure says, and what it covers."""
 
 from __future__ import annotations
 
 from matplotlib.figure import Figure
+from matplotlib.text import Text
 from matplotlib.transforms import Bbox
+
+
+def text_of(figure: Figure) -> str:
+    """All that is written in a figure."""
+    return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 def covered_lines(figure: Figure) -> list[str]:

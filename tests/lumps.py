@@ -7,8 +7,10 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import ConvexHull
 
+from tactsim.analytic.sphere_points import sphere_points
 from tactsim.interfaces.solid import Solid
-from tactsim.mesh.inclusions.ellipsoid import Ellipsoid, spiral
+from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMesh
+from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.quadratic import QuadraticMesh
@@ -28,10 +30,17 @@ CURVED = Tube(
 
 def irregular(count: int = 300) -> tuple[Array, Array]:
     """Vertices in mm and outward triangles of a bumpy closed surface of about 4.5 mm radius."""
-    unit = spiral(count)
+    unit = sphere_points(count)
     faces = outward(unit, ConvexHull(unit).simplices, np.zeros(3))
     radius = 4.5 * (1 + 0.15 * np.sin(3 * unit[:, 0]) * np.cos(4 * unit[:, 1]) + 0.1 * np.sin(4 * unit[:, 2] + 1))
     return unit * radius[:, None], faces
+
+
+def assert_sound(block: BlockMesh) -> None:
+    """Volumes within their tolerance, no sliver and no element inside out."""
+    assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
+    assert block.quality.minimum > 0.02
+    assert block.quality.curvature > 0
 
 
 def write_cells(path: Path, points: Array, **cells: Array) -> Path:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -27,6 +28,17 @@ LAYOUT = TaxelLayout(rows=3, columns=3, pitch=10e-3, size=9e-3)
 RADII = np.array([2e-3, 3e-3, 4e-3, 5e-3, 6e-3, 7e-3])
 CLOSINGS = np.array([0.4e-3, 0.8e-3, 1.2e-3])
 NOISE = 0.3e-3
+PLAIN = np.full((2, 3, 3), 0.25)
+"""Forces in N of plain tissue, the same on all taxels."""
+BALL_AT = (28e-3, 14e-3, 12e-3)
+BALL = np.array(
+    [
+        [[0.0034, 0.0318, 0.369], [0.0028, 0.021, 0.1399], [0.004, 0.0033, 0.0029]],
+        [[0.0039, 0.0714, 0.234], [0.0029, 0.0621, 0.1505], [0.0027, 0.0048, 0.0073]],
+    ]
+)
+"""Coarse finite elements: what a hard ball of radius 5 mm at ``BALL_AT`` adds to plain ICF on the same mesh, both jaws closed by
+1 mm, in N."""
 TEXT = """\
 schema: tactsim/sweep/1
 title: Made-up grasps
@@ -47,17 +59,37 @@ sweep: {samples: 40, seed: 3, splits: {train: 0.75, validation: 0.0}}
 READOUT = "  time: {steps: 1}\n  readout: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}, seed: 4}\n"
 
 
-@cache
-def response() -> LumpResponse:
-    """A bell over every taxel that fades with the distance from its jaw."""
-    lines = [(np.arange(n) + 0.5) * side / n for n, side in zip((40, 40, 20), SIZE, strict=True)]
+def cells_of_block(count: tuple[int, int, int]) -> tuple[np.ndarray, np.ndarray]:
+    """Midpoints (n, 3) in m and volumes (n,) in m^3 of equal cells that fill the block."""
+    lines = [(np.arange(n) + 0.5) * side / n for n, side in zip(count, SIZE, strict=True)]
     places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
+    return places, np.full(len(places), np.prod(SIZE) / len(places))
+
+
+def taxel_density(places: np.ndarray) -> np.ndarray:
+    """A bell over every taxel that fades with the distance from its jaw, (2, 3, 3, n) in N/m^3."""
     x, y = (LAYOUT.borders(along).mean(axis=1) + 20e-3 for along in "xy")
     away = (places[:, 0] - x[None, :, None]) ** 2 + (places[:, 1] - y[:, None, None]) ** 2
     depth = np.stack([SIZE[2] - places[:, 2], places[:, 2]])[:, None, None]
-    density = 1e5 * np.exp(-away[None] / 8e-3**2 - depth / 6e-3)
-    volumes = np.full(len(places), np.prod(SIZE) / len(places))
-    return LumpResponse.of_density(places, volumes, density, size=SIZE, radii=RADII, spacing=2e-3)
+    return 1e5 * np.exp(-away[None] / 8e-3**2 - depth / 6e-3)
+
+
+def bell_response(
+    radii: np.ndarray,
+    density: Callable[[np.ndarray], np.ndarray] = taxel_density,
+    *,
+    count: tuple[int, int, int] = (40, 40, 20),
+    spacing: float = 2e-3,
+) -> LumpResponse:
+    """The response of a density that is known in closed form."""
+    places, volumes = cells_of_block(count)
+    return LumpResponse.of_density(places, volumes, density(places), size=SIZE, radii=radii, spacing=spacing)
+
+
+@cache
+def response() -> LumpResponse:
+    """The response for the radii of the made-up lumps."""
+    return bell_response(RADII)
 
 
 def plain_forces(closings: np.ndarray) -> np.ndarray:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cache
 from pathlib import Path
 
 import numpy as np
+import pytest
 
+from tactsim.cli import command_sweep
+from tactsim.dataset.running import computing
 from tactsim.dataset.running.computing import computed
 from tactsim.dataset.running.executors import Executor, TaskOutcome
 from tactsim.dataset.running.resuming import opened_run
@@ -69,6 +73,13 @@ class Inline(Executor):
 
     def close(self) -> None:
         self.tasks = []
+
+
+def compute_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
+    """``tactsim sweep`` computes in this process, and the same samples only once in a test."""
+    known = cache(lambda text, samples: computing.computed(text, samples))
+    monkeypatch.setattr("sweeps.computed", lambda text, samples: known(text, tuple(samples)))
+    monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
 
 
 def sweep_file(folder: Path, text: str = TEXT) -> Path:

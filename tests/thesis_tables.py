@@ -5,10 +5,11 @@ from __future__ import annotations
 from functools import cache
 from pathlib import Path
 
+from tactsim.case.loading import load_case
+from tactsim.shipped import CASES
 from tactsim.validation import load_tables
 from tactsim.validation.loading import LoadedTables
 
-CASES = Path(__file__).parents[1] / "cases"
 GROUPS = ("thesis", "published")
 
 MANIFEST = """\
@@ -62,6 +63,16 @@ def write_tables(folder: Path, table: str = TABLE, manifest: str = MANIFEST) -> 
 def shipped_tables(group: str) -> LoadedTables:
     """All tables of a group, read when a test needs them: every process that collects tests would read them at import."""
     return load_tables(CASES / group)
+
+
+def assert_cases_valid(folder: Path) -> None:
+    """Every table of a folder is counted, and the cases of its runs can be read and differ from each other."""
+    loaded = load_tables(folder)
+    assert loaded.faults == ()
+    for table in loaded.tables.values():
+        for study in table.studies:
+            cases = [load_case(folder / study.case, study.overrides(run)) for run in study.runs]
+            assert len({case.case_id for case in cases}) == len(study.runs)
 
 
 def shipped_names() -> list[tuple[str, str]]:

@@ -62,7 +62,7 @@ class DurometerScale(FrozenModel):
 
 
 def hertz_force(depth: float | Array, radius: float, youngs_modulus: float) -> float | Array:
-    r"""Force in N of a rigid sphere on an incompressible elastic half-space.
+    r"""Force in N, of the shape of the depth, of a rigid sphere on an incompressible elastic half-space.
 
     .. math:: F = \tfrac{16}{9} E \sqrt{R}\, d^{3/2}
 

@@ -152,10 +152,14 @@ class History:
     def value(self, t: ArrayLike) -> Array:
         """f(t) at times ``t`` in s, of the shape of ``t``; at a jump the value after it."""
         instants = checked_instants("t", t)
+        piece, elapsed = self.located(instants)
+        return np.where(instants < 0, 0.0, self.pieces.taken(piece).at(elapsed).reshape(instants.shape))
+
+    def located(self, instants: Array) -> tuple[Array, Array]:
+        """Piece that holds each of m times in s, and the time in s since its start, both (m,); before 0 it is as at 0."""
         flat = np.maximum(instants, 0.0).ravel()
         piece = np.searchsorted(self.starts, flat, side="right") - 1
-        values = self.pieces.taken(piece).at(flat - self.starts[piece]).reshape(instants.shape)
-        return np.where(instants < 0, 0.0, values)
+        return piece, flat - self.starts[piece]
 
     def added(self, other: History) -> History:
         """The sum of both histories, on the union of their breakpoints."""

@@ -39,12 +39,11 @@ def response(model: GeneralizedKelvin | GeneralizedMaxwell, history: History, ti
         raise InvalidQuantity("times hold NaN or infinity; allowed: finite times in s")
     if instants.size == 0:
         return instants
-    flat = np.maximum(instants, 0.0).ravel()
-    piece = np.searchsorted(history.starts, flat, side="right") - 1
+    piece, elapsed = history.located(instants)
     passed = slice(0, piece.max())
     durations = np.diff(history.starts)[passed]
     whole = _Spans(history.pieces.taken(passed), durations)
-    partial = _Spans(history.pieces.taken(piece), flat - history.starts[piece])
+    partial = _Spans(history.pieces.taken(piece), elapsed)
     if isinstance(model, GeneralizedKelvin):
         output = _strain(model, whole, partial, piece)
     else:

@@ -9,8 +9,9 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.film_line import LineProjection, projected_on_line
+from tactsim.identification.film_line import ACCURATE_FORCES, LineProjection, projected_on_line
 from tactsim.sensors.electronics.calibration import LinearCalibration
+from tactsim.sensors.electronics.film_calibration import LINE_POINTS
 from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
 
 CREEP_FORCES = (2.0, 4.0, 6.0, 8.0)
@@ -40,9 +41,7 @@ def identify_film_jointly(
     line: LinearCalibration,
     *,
     creep_weight: float | None = None,
-    forces: tuple[float, float] = (0.5, 5.0),
-    delay: float = 1.0,
-    points: int = 91,
+    forces: tuple[float, float] = ACCURATE_FORCES,
 ) -> JointFilm:
     r"""R0, R_1 and the barrier, and on request the six constants of the creep, by least squares of line and creep together.
 
@@ -59,7 +58,7 @@ def identify_film_jointly(
         The conductance C = m F + n.
     creep_weight : float, optional
         w >= 0; None keeps the creep as it is given.
-    forces, delay, points
+    forces : (float, float)
         As in ``identify_film``.
 
     Raises
@@ -76,10 +75,10 @@ def identify_film_jointly(
     count = 1 if creep_weight is None else 1 + 2 * len(CREEP_COEFFICIENTS)
 
     def projected(logarithms: Array) -> LineProjection:
-        return projected_on_line(changed(composite, logarithms), line, forces=forces, delay=delay, points=points)
+        return projected_on_line(changed(composite, logarithms), line, forces)
 
     def residuals(logarithms: Array) -> Array:
-        parts = [projected(logarithms).errors / np.sqrt(points)]
+        parts = [projected(logarithms).errors / np.sqrt(LINE_POINTS)]
         if creep_weight:
             creep = np.log1p(_creep_changes(composite, changed(composite, logarithms)))
             parts.append(creep_weight * creep.ravel() / np.sqrt(creep.size))

@@ -10,8 +10,12 @@ import scipy
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.sensors.electronics.calibration import LinearCalibration
+from tactsim.sensors.electronics.film_calibration import LINE_POINTS, READ_AFTER, read_under
 from tactsim.sensors.films.composite import Composite
 from tactsim.sensors.films.film import Film
+
+ACCURATE_FORCES = (0.5, 5.0)
+"""Range in N in which the thesis (7.1) wants accuracy."""
 
 
 @dataclass(frozen=True)
@@ -28,9 +32,7 @@ def identify_film(
     composite: Composite,
     line: LinearCalibration,
     *,
-    forces: tuple[float, float] = (0.5, 5.0),
-    delay: float = 1.0,
-    points: int = 91,
+    forces: tuple[float, float] = ACCURATE_FORCES,
 ) -> FilmLine:
     r"""Resistances R0 and R_1 with the least squares of relative errors of the resistance at evenly spaced forces.
 
@@ -43,9 +45,7 @@ def identify_film(
     line : LinearCalibration
         The conductance C = m F + n.
     forces : (float, float)
-        Range in N; the thesis (7.1) wants accuracy from 0.5 to 5 N.
-    delay : float
-        Time in s after the force was applied at which the line was measured (thesis 2.2.1: 1 s).
+        Range in N.
 
     Raises
     ------
@@ -54,7 +54,7 @@ def identify_film(
 
     Source: errata E28; thesis, eqs. 2.1.17 and 2.2.1.
     """
-    projection = projected_on_line(composite, line, forces=forces, delay=delay, points=points)
+    projection = projected_on_line(composite, line, forces)
     initial, touching = projection.resistances
     if min(initial, touching) <= 0:
         raise InvalidQuantity(f"the line {line} gives resistances {initial:g} and {touching:g} ohm; both must be positive")
@@ -70,9 +70,7 @@ class LineProjection:
     errors: Array
 
 
-def projected_on_line(
-    composite: Composite, line: LinearCalibration, *, forces: tuple[float, float], delay: float, points: int
-) -> LineProjection:
+def projected_on_line(composite: Composite, line: LinearCalibration, forces: tuple[float, float]) -> LineProjection:
     """The resistances of ``identify_film``, which may be zero; its arguments.
 
     Raises
@@ -80,15 +78,14 @@ def projected_on_line(
     InvalidQuantity
         If the line or the range is not positive.
     """
-    applied = np.linspace(*forces, points)
+    applied = np.linspace(*forces, LINE_POINTS)
     measured = line.slope * applied + line.intercept
-    if not (0 < forces[0] < forces[1] and delay > 0 and np.all(measured > 0)):
-        raise InvalidQuantity(f"line {line} in SI over {forces} N at {delay} s; allowed: rising forces, C > 0")
+    if not (0 < forces[0] < forces[1] and np.all(measured > 0)):
+        raise InvalidQuantity(f"line {line} in SI over {forces} N at {READ_AFTER} s; allowed: rising forces, C > 0")
     # With both resistances at 1 ohm the film's resistance is R_pol / R0 + 1 / sqrt(F).
     unit = Film(composite=composite.model_copy(update={"initial_resistance": 1.0, "contact_resistance": 1.0}))
-    history = np.tile(applied, (2, 1))
     contact = 1 / np.sqrt(applied)
-    relative = 1 / unit.conductance([0.0, delay], history)[-1] - contact
+    relative = 1 / read_under(unit, applied) - contact
     columns = np.column_stack([relative, contact]) * measured[:, None]
-    resistances, _ = scipy.optimize.nnls(columns, np.ones(points))
+    resistances, _ = scipy.optimize.nnls(columns, np.ones(LINE_POINTS))
     return LineProjection(resistances, applied, columns @ resistances - 1)

@@ -114,11 +114,11 @@ class ContactLaw(CaseKind):
 
     @abstractmethod
     def traction_limit(self, pressure: Array) -> Array:
-        """Largest tangential traction in Pa that the contact pressure in Pa sustains."""
+        """Largest tangential traction in Pa that the contact pressure (n,) in Pa sustains, (n,)."""
 
     @abstractmethod
     def traction_limit_slope(self, pressure: Array) -> Array:
-        """Derivative of the limit with respect to the pressure, dimensionless."""
+        """Derivative (n,) of the limit with respect to the pressure, dimensionless."""
 
 
 class Inclusion(CaseKind):
@@ -194,11 +194,11 @@ class SensorFilm(CaseKind):
 
     @abstractmethod
     def advance(self, state: Any, time: ArrayLike, force: ArrayLike) -> tuple[Array, Any]:
-        """Signal of the next samples of force in N, and the state after them; None is a film at rest."""
+        """Signal (n, ...) of the next forces (n, ...) in N at times (n,) in s, and the state after them, None at rest."""
 
     @abstractmethod
     def retreat(self, state: Any, time: ArrayLike, signal: ArrayLike) -> tuple[Array, Any]:
-        """Force in N of the next samples of the signal, and the state after them: the inverse of ``advance``."""
+        """Force (n, ...) in N of the next samples of the signal, and the state after them: the inverse of ``advance``."""
 
     @abstractmethod
     def strain(self, time: ArrayLike, force: ArrayLike) -> Array:
@@ -221,11 +221,11 @@ class SensorFilm(CaseKind):
         """What goes beyond the measurements when forces reach ``largest`` newton."""
 
     def read(self, time: ArrayLike, force: ArrayLike) -> Array:
-        """Signal of a film that is at rest before the first sample."""
+        """Signal of a film that is at rest before the first sample, of the shape of ``force``."""
         return self.advance(None, time, force)[0]
 
     def force(self, time: ArrayLike, signal: ArrayLike) -> Array:
-        """Force in N whose history gives this signal."""
+        """Force in N whose history gives this signal, of its shape."""
         return self.retreat(None, time, signal)[0]
 
 

@@ -96,6 +96,12 @@ class Candidates:
         return (_plan_distance(firsts, lasts, of) < reach) & (above < reach)
 
 
+def centres_and_room(axes: Sequence[Array], size: Array) -> tuple[Array, Array]:
+    """Centres (n, 3) in m at the places along three axes, and their distance (n,) in m from the nearest face of the block."""
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    return grid, np.minimum(grid, size - grid).min(axis=1)
+
+
 def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
     """Balls at every ``every``-th centre of the table with the tabulated radii nearest to ``radii``, inside the block by a gap.
 
@@ -105,8 +111,7 @@ def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float
         If none fits, or all radii lie beyond those of the table.
     """
     axes = tuple(axis[every // 2 :: every] for axis in response.axes)
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    room = np.minimum(grid, size - grid).min(axis=1)
+    grid, room = centres_and_room(axes, size)
     parts = []
     for k in _tabulated(response, radii):
         fits = room >= response.radii[k] + gap

@@ -11,6 +11,7 @@ from tactsim.array import Array
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
 from tactsim.localization.reference_errors import SAME_TISSUE, TAXEL_ERROR, ReferenceErrors
+from tactsim.sensors.response_errors import root_mean_square
 
 REACH = 1.25
 """Distance in plan, in pitches, from which a taxel is beside an inclusion: those next to its own in row or column are not."""
@@ -76,7 +77,8 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
     change, plain = readings.difference[beside], reference[beside]
     if len(plain) < LEAST or not plain.any():
         return None
-    errors = ReferenceErrors(plain, readings.noise, TAXEL_ERROR * _rms(reference) / _rms(plain), SAME_TISSUE, 0.0)
+    spread = TAXEL_ERROR * root_mean_square(reference) / root_mean_square(plain)
+    errors = ReferenceErrors(plain, readings.noise, spread, SAME_TISSUE, 0.0)
     factor = 1 + float(plain @ change / (plain @ plain))
     along, left = (factor - 1) ** 2 * float(plain @ plain), change - (factor - 1) * plain
     rest, same = float(left @ left), errors.white(0 * change)
@@ -102,10 +104,6 @@ def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
     if estimate.factor is None:
         return f"{words}; the estimate takes that for an inclusion; give a reference of this tissue"
     return f"{words}; the estimate allows for one common factor"
-
-
-def _rms(values: Array) -> float:
-    return float(np.sqrt(np.mean(values**2)))
 
 
 def _beside(readings: Readings, estimate: Estimate) -> Array:

@@ -71,7 +71,7 @@ class CellRegion(Region):
         return bool(self.inside(probability)[tuple(index)])
 
     def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
-        """Of the cells of the region."""
+        """Diameter in m of the disc as large as the plan of the region's cells, and their height in m."""
         chosen = self.inside(probability)
         area = float(chosen.any(axis=2).sum() * self.cell[0] * self.cell[1])
         return 2 * float(np.sqrt(area / np.pi)), float(chosen.any(axis=(0, 1)).sum() * self.cell[2])
@@ -114,13 +114,13 @@ class GaussianRegion(Region):
         return bool(away @ np.linalg.solve(self.covariance, away) <= self._quantile(probability))
 
     def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
-        """Of the shadow of the ellipsoid on the plan, and its height."""
+        """Diameter in m of the disc as large as the plan of the ellipsoid, and its height in m."""
         quantile = self._quantile(probability)
         plan = float(np.linalg.det(np.asarray(self.covariance)[:2, :2]))
         return 2 * float(np.sqrt(quantile) * plan**0.25), 2 * float(np.sqrt(quantile * np.asarray(self.covariance)[2, 2]))
 
     def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
-        """An ellipse, as a polygon."""
+        """An ellipse, as a closed polygon (n, 2) in m."""
         across = [k for k in range(3) if k != away]
         root = np.linalg.cholesky(np.asarray(self.covariance)[np.ix_(across, across)])
         angles = np.linspace(0, 2 * np.pi, CORNERS + 1)
@@ -149,7 +149,7 @@ class OutlinedRegion(Region):
         return all(_within(np.delete(point, away), self.outlines.get(view, ())) for view, away in AWAY.items())
 
     def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
-        """Of the outlines from above and from the front."""
+        """Diameter in m of the disc as large as the outlines from above, and height in m of those from the front."""
         self._check(probability)
         area = sum(
             abs((line[:-1, 0] * line[1:, 1] - line[:-1, 1] * line[1:, 0]).sum()) / 2
@@ -159,7 +159,7 @@ class OutlinedRegion(Region):
         return 2 * float(np.sqrt(area / np.pi)), float(np.ptp(heights))
 
     def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
-        """The outlines as they were kept."""
+        """The outlines (n, 2) in m as they were kept."""
         self._check(probability)
         view = next(name for name, axis in AWAY.items() if axis == away)
         return [np.asarray(line, dtype=float) for line in self.outlines.get(view, ())]

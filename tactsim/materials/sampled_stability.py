@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from tactsim.analytic.sphere_points import sphere_points
 from tactsim.array import Array
 from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import diagonal
@@ -37,7 +38,7 @@ def _margin(material: Material, F: Array) -> Array:
     On the plane normal to a unit vector c, a symmetric Q has the eigenvalues of trace tr Q - c.Qc and product c.adj(Q)c.
     """
     count = F.shape[2]
-    normals = half_sphere(DIRECTIONS)
+    normals = sphere_points(DIRECTIONS, lowest=0.0)
     moduli = material.tangent(F, np.zeros(count)).transpose(4, 0, 2, 1, 3).reshape(count, 9, 9)
     pairs = np.einsum("dJ,dL->JLd", normals, normals).reshape(9, -1)
     Q = (moduli @ pairs).reshape(count, 3, 3, -1)
@@ -84,14 +85,3 @@ def smaller_eigenvalue(matrix: Array) -> Array:
     """Smaller eigenvalue of symmetric matrices of shape (2, 2, ...)."""
     mean, half = (matrix[0, 0] + matrix[1, 1]) / 2, (matrix[0, 0] - matrix[1, 1]) / 2
     return mean - np.hypot(half, matrix[0, 1])
-
-
-def half_sphere(count: int) -> Array:
-    """Evenly spread unit vectors (count, 3) of positive height.
-
-    Source: Gonzalez 2010, Mathematical Geosciences 42, 49-64, doi:10.1007/s11004-009-9257-x (Fibonacci lattice).
-    """
-    step = np.arange(count) + 0.5
-    height, angle = 1 - step / count, np.pi * (1 + np.sqrt(5)) * step
-    radius = np.sqrt(1 - height**2)
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)

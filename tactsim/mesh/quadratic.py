@@ -50,7 +50,7 @@ class QuadraticMesh:
     def edges(self) -> tuple[Array, Array]:
         """Edges (m, 2) by their corners, ascending, and the node in the middle of each (m,)."""
         pairs = np.concatenate([np.sort(self.elements[:, list(edge)], axis=1) for edge in EDGES[self.dim]])
-        _, first = np.unique(pairs[:, 0] * self.corner_count + pairs[:, 1], return_index=True)
+        _, first = np.unique(row_numbers(pairs), return_index=True)
         return pairs[first], self.elements[:, self.dim + 1 :].T.ravel()[first]
 
     def boundary_facets(self) -> tuple[Array, Array]:

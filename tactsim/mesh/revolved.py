@@ -124,19 +124,23 @@ def _rounded(straight: QuadraticMesh, section: QuadraticMesh, places: Array, *, 
 def _middles(section: QuadraticMesh, pairs: Array) -> Array:
     """The section's node (n,) between two of its corners (n, 2), which may be the same."""
     count = section.corner_count
-    edges = np.sort(section.elements[:, [[0, 1], [1, 2], [0, 2]]].reshape(-1, 2), axis=1)
-    keys, first = np.unique(edges[:, 0] * count + edges[:, 1], return_index=True)
-    known = section.elements[:, 3:].ravel()[first]
-    pairs = np.sort(pairs, axis=1)
-    at = np.minimum(np.searchsorted(keys, pairs[:, 0] * count + pairs[:, 1]), len(keys) - 1)
+    (edges, known), pairs = section.edges(), np.sort(pairs, axis=1)
+    keys = edges @ [count, 1]
+    at = np.minimum(np.searchsorted(keys, pairs @ [count, 1]), len(keys) - 1)
     return np.where(pairs[:, 0] == pairs[:, 1], pairs[:, 0], known[at])
 
 
 def _turned(nodes: Array, angles: Array) -> Array:
     """Points (n, 3) in m of section nodes (n, 2) turned by angles in rad; exact at multiples of a right angle."""
-    cosine, sine = np.cos(angles), np.sin(angles)
+    return np.column_stack([polar(np.column_stack([nodes[:, 0], angles])), nodes[:, 1]])
+
+
+def polar(nodes: Array) -> Array:
+    """Places (n, 2) in the plane of nodes (n, 2) given by radius in m and angle in rad; exact on both axes."""
+    r, angle = nodes.T
+    cosine, sine = np.cos(angle), np.sin(angle)
     cosine, sine = (np.where(np.abs(part) < 1e-14, 0.0, part) for part in (cosine, sine))
-    return np.stack([nodes[:, 0] * cosine, nodes[:, 0] * sine, nodes[:, 1]], axis=1)
+    return np.column_stack([r * cosine, r * sine])
 
 
 def shifted_outside(nodes: Array, offset: float, *, radius: float, rest: float) -> Array:

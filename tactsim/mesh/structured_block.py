@@ -177,12 +177,16 @@ def ranks(keys: tuple[Array, ...]) -> Array:
     return places
 
 
-def twelfths(cells: Array, corners: Array, places: Array) -> tuple[Array, Array]:
-    """Twelve tetrahedra for each cell (H, 8), around its centre; the diagonal of a side starts at its first place (n,)."""
-    sides = cells[:, SIDES]
+def halved_sides(sides: Array, places: Array) -> Array:
+    """Two triangles (H, 6, 2, 3) for each side of cells (H, 6, 4), whose diagonal starts at its first place (n,)."""
     first = places[sides].argmin(axis=2)
     turned = np.take_along_axis(sides, (first[:, :, None] + np.arange(4)) % 4, axis=2)
-    triangles = np.stack([turned[:, :, [0, 1, 2]], turned[:, :, [0, 2, 3]]], axis=2).reshape(len(cells), 12, 3)
+    return np.stack([turned[:, :, [0, 1, 2]], turned[:, :, [0, 2, 3]]], axis=2)
+
+
+def twelfths(cells: Array, corners: Array, places: Array) -> tuple[Array, Array]:
+    """Twelve tetrahedra for each cell (H, 8), around its centre; the diagonal of a side starts at its first place (n,)."""
+    triangles = halved_sides(cells[:, SIDES], places).reshape(len(cells), 12, 3)
     centres = len(corners) + np.arange(len(cells))
     tips: Array = np.broadcast_to(centres[:, None, None], (len(cells), 12, 1))
     simplices = np.concatenate([triangles[:, :, ::-1], tips], axis=2)

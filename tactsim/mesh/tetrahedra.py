@@ -41,9 +41,9 @@ ENVELOPE = 0.03
 FACET_SIZE = 0.6
 """Edge length of the triangles given to the mesher, in element sizes."""
 ATTEMPTS = (1.0, 0.8, 0.64, 0.5, 0.4)
-"""Parts of the element size at inclusions that are tried by turns until a mesh keeps its bounds: the mesher gives another mesh
-every time, and of 33 meshes of spheres of 3 to 4.5 mm two missed the volume by 0.56 %, the others by 0.3 % at most. Two spheres
-of 1.55 mm, smaller than the usual element of 2.6 mm, missed it by 2.9, 3.4, 0.28, 0.13 and 0.05 %."""
+"""Parts of the element size at inclusions that are tried one after the other until a mesh keeps its bounds: the mesher gives
+another mesh every time, and of 33 meshes of spheres of 3 to 4.5 mm two missed the volume by 0.56 %, the others by 0.3 % at
+most. Two spheres of 1.55 mm, smaller than the usual element of 2.6 mm, missed it by 2.9, 3.4, 0.28, 0.13 and 0.05 %."""
 REVISION = 2
 """Raised when the same input shall give another mesh."""
 MODULE = "tactsim.mesh.tetrahedra"

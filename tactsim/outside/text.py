@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import unicodedata
+from collections.abc import Iterable, Sequence
 
 LONGEST_LINE = 500
 """Characters of a foreign text that are shown: more than any title or reason of this program has."""
@@ -24,6 +25,16 @@ def printable(text: str) -> str:
     """Several lines as they may go to a terminal or a log: line breaks and tabs stay, all other control characters are spelled
     out."""
     return text if text.isascii() and text.isprintable() else "".join(_spelled(c, _KEPT) for c in text)
+
+
+def markdown_table(header: Sequence[object], rows: Iterable[Iterable[object]]) -> list[str]:
+    """Lines of a table in Markdown."""
+    return [markdown_row(header), markdown_row(["---"] * len(header)), *map(markdown_row, rows)]
+
+
+def markdown_row(cells: Iterable[object]) -> str:
+    """Line of a table in Markdown; a bar in a cell does not end it."""
+    return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
 
 
 def _spelled(character: str, kept: frozenset[str] = frozenset()) -> str:

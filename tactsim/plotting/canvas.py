@@ -17,6 +17,7 @@ from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.interfaces.drawing import png_source
@@ -224,6 +225,13 @@ def with_minus(words: str) -> str:
 def despined(axis: Axes) -> None:
     """Takes away the upper and right line of the frame."""
     axis.spines[["top", "right"]].set_visible(False)
+
+
+def plain_decades(axis: Axes) -> None:
+    """Ticks of a logarithmic ordinate at 1, 2 and 5 of each decade, as plain numbers."""
+    axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.yaxis.set_minor_formatter(NullFormatter())
 
 
 def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: tuple[float, ...]) -> np.ndarray:

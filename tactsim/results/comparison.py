@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from tactsim.outside.text import markdown_row
 from tactsim.results.result import Result
 from tactsim.units import compact_unit, conversion
 
@@ -62,11 +63,9 @@ class Comparison:
 
     def markdown_text(self) -> str:
         """A row for each number, a column for each result, five digits."""
-        lines = [f"| | {' | '.join(_cell(name) for name in self.names)} |", f"|---{'|---:' * len(self.names)}|"]
-        lines.append(f"| status | {' | '.join(self.statuses)} |")
-        lines += [f"| {_cell(key)} | {' | '.join(map(_cell, values))} |" for key, values in self.inputs.items()]
-        for column in self.columns:
-            lines.append(f"| {column.head} | {' | '.join(map(shown_number, column.values))} |")
+        lines = [f"| {markdown_row(self.names)}", f"|---{'|---:' * len(self.names)}|", markdown_row(["status", *self.statuses])]
+        lines += [markdown_row([key, *values]) for key, values in self.inputs.items()]
+        lines += [markdown_row([column.head, *map(shown_number, column.values)]) for column in self.columns]
         return "\n".join(lines) + "\n"
 
 
@@ -143,7 +142,3 @@ def _column(name: str, unit: str, description: str, results: Mapping[str, Result
     readable = compact_unit(max(sizes, default=0.0), unit)
     factor = conversion(unit, readable)
     return Column(name, readable, description, tuple(None if value is None else value * factor for value in values))
-
-
-def _cell(text: str) -> str:
-    return text.replace("|", "\\|")

@@ -8,6 +8,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, get_args
 
+from tactsim.outside.text import markdown_table
 from tactsim.units import format_quantity
 from tactsim.validation.comparison import LEFT, RowOutcome, TableOutcome, figure_text
 from tactsim.validation.endings import AFTER, LABELS, Bound, Origin, Outside, Regression, Reproduced, Tolerance
@@ -250,9 +251,3 @@ def _failures(outcome: TableOutcome) -> list[str]:
     return [
         f"{study}, {run.id}: {run.reason}" for study, runs in outcome.inputs.studies.items() for run in runs if not run.converged
     ]
-
-
-def markdown_table(header: Sequence[str], rows: Sequence[Sequence[Any]]) -> list[str]:
-    """Lines of a Markdown table."""
-    lines = [header, ["---"] * len(header), *rows]
-    return ["| " + " | ".join(str(cell).replace("|", "\\|") for cell in line) + " |" for line in lines]

@@ -43,6 +43,7 @@ from tactsim.plotting import figures_for
 from tactsim.presentation import load_result
 from tactsim.registry import forget, kind_class, kinds
 from tactsim.results.result import Status
+from tactsim.shipped import CASES
 
 POINTS = (Material, RigidBody, ContactLaw, Inclusion, SensorFilm, Experiment, Estimator, Recorder, ResultFigures)
 MODULES = {
@@ -193,7 +194,7 @@ SMALL_GRASP = """
   mesh: {kind: structured, cells: [2, 2, 2]}
 """
 LOCALIZATION = "{kind: localization, grasp: LUMP, reference: PLAIN, noise: 1 mN, estimator: {kind: NAMED}}"
-STORED = Path(__file__).parents[2] / "cases" / "stored"
+STORED = CASES / "stored"
 FILM = "{kind: film_test, film: {kind: NAMED}, forces: [1 N, 2 N, 3 N], times: [1 s]}"
 
 

@@ -15,12 +15,11 @@ from typing import Any
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from sweeps import Inline, assert_same, small_store, sweep_file
+from sweeps import assert_same, compute_once_here, small_store, sweep_file
 
-from tactsim.cli import command_sweep, main
+from tactsim.cli import main
 from tactsim.dataset import load
 from tactsim.dataset.figures import card as dataset_card
-from tactsim.dataset.running import computing
 from tactsim.errors import TactsimError
 
 QUICK = settings(derandomize=True, deadline=None, max_examples=15, suppress_health_check=list(HealthCheck))
@@ -47,9 +46,7 @@ def kept() -> Path:
 @pytest.fixture(autouse=True)
 def bounded(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Samples are computed once and in this process, nothing is drawn, and memory is bounded."""
-    known = cache(lambda text, samples: computing.computed(text, samples))
-    monkeypatch.setattr("sweeps.computed", lambda text, samples: known(text, tuple(samples)))
-    monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+    compute_once_here(monkeypatch)
     monkeypatch.setattr(dataset_card, "card_figures", lambda store: {})
     kept()
     before = resource.getrlimit(resource.RLIMIT_AS)

@@ -7,20 +7,18 @@ import os
 import shutil
 from collections.abc import Callable, Iterator
 from contextlib import suppress
-from functools import cache
 from pathlib import Path
 
 import numpy as np
 import pytest
 from failing_disk import At, Killed, disk
 from pretence import PNG
-from sweeps import TEXT, Inline, assert_same, content, run_sweep, sweep_file
+from sweeps import TEXT, assert_same, compute_once_here, content, run_sweep, sweep_file
 
-from tactsim.cli import command_sweep, main
+from tactsim.cli import main
 from tactsim.dataset import load
 from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
-from tactsim.dataset.running import computing
 from tactsim.dataset.running import run as running
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.sweep import load_sweep
@@ -37,9 +35,7 @@ STRIDE, CREATION_STRIDE = 149, 17
 @pytest.fixture(autouse=True)
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Samples are computed once, the figure is a dot, and the journal goes into the arrays after each task."""
-    kept = cache(lambda text, samples: computing.computed(text, samples))
-    monkeypatch.setattr("sweeps.computed", lambda text, samples: kept(text, tuple(samples)))
-    monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+    compute_once_here(monkeypatch)
     monkeypatch.setattr(dataset_card, "card_figures", lambda store: {"spread.png": lambda: PNG})
     monkeypatch.setattr(running, "MOST_IN_TASK", 2)
     monkeypatch.setattr(running, "FOLD_SAMPLES", 2)

@@ -11,8 +11,8 @@ from pathlib import Path
 import pytest
 
 from tactsim.cli import main
+from tactsim.shipped import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 NAME = "calibrate_force_sensor.yaml"
 DATA = "force_sensor_calibration.csv"
 KEY = "experiment.data.path"

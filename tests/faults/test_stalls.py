@@ -18,8 +18,7 @@ from tactsim.fem.paths.loading import PathFollower, StepControl
 from tactsim.fem.paths.progress import MOST_FURTHER, MOST_STEPS, WINDOW
 from tactsim.fem.paths.time_steps import TimeControl, TimeMarcher
 from tactsim.results.result import Status
-
-CASES = Path(__file__).parents[2] / "cases"
+from tactsim.shipped import CASES
 
 
 @dataclass(frozen=True)

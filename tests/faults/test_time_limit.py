@@ -17,8 +17,7 @@ from tactsim.errors import OutOfTime
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.tetrahedra import block_mesh
 from tactsim.results.result import Status, StepRecord
-
-CASES = Path(__file__).parents[2] / "cases"
+from tactsim.shipped import CASES
 
 
 def test_every_step_heeds_the_limit():

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import tracemalloc
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -21,8 +20,7 @@ from tactsim.mesh.axisymmetric import section_mesh
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.sizing import at_jaw_edges
 from tactsim.mesh.structured_block import structured_block
-
-CASES = Path(__file__).parents[2] / "cases"
+from tactsim.shipped import CASES
 
 
 @pytest.mark.parametrize(

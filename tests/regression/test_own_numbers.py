@@ -5,8 +5,6 @@ Each test says where its number comes from, the version and the mesh that gave i
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -15,8 +13,7 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.identification.film_line import identify_film
 from tactsim.sensors.electronics.calibration import THESIS_LINE
 from tactsim.sensors.films.composite_library import named_composite
-
-CASES = Path(__file__).parents[2] / "cases"
+from tactsim.shipped import CASES
 
 
 def run(case, *overrides):

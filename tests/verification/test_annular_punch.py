@@ -5,12 +5,11 @@ Every check fails with a wrong model: another formula, the other base, a wrong c
 
 from __future__ import annotations
 
-import csv
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
+from exact_punches import RINGS, SLENDERNESS, SOLID, half_space_rows
 from mutants import assert_kills
 from scipy.integrate import quad, quad_vec
 from scipy.optimize import minimize_scalar
@@ -19,28 +18,6 @@ from scipy.special import ellipkm1, j0
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.analytic.force_factor import force_factor, rise_factor
 
-EXACT = Path(__file__).parent / "annular_punch.csv"
-"""Ring-load integral equation by Chebyshev collocation; 40 and 60 terms agree to 1e-12."""
-
-SLENDERNESS = (0.1, 0.2, 0.4, 0.5, 0.6, 0.8, 1.0, 1.5, 2.0)
-SOLID = {
-    # base, nu: P (1 - nu) / (4 G a eps) at SLENDERNESS; Fredholm equation of Lebedev and Ufliand, converged to 1e-12
-    ("bonded", 0.30): (1.0954, 1.2066, 1.4726, 1.6240, 1.7848, 2.1260, 2.4835, 3.4090, 4.3532),
-    ("bonded", 0.49): (1.1234, 1.2741, 1.6638, 1.9028, 2.1694, 2.7796, 3.4840, 5.6322, 8.3370),
-    ("bonded", 0.50): (1.1260, 1.2806, 1.6837, 1.9329, 2.2129, 2.8602, 3.6187, 6.0030, 9.1495),
-    ("slipping", 0.2): (1.0799, 1.1710, 1.3851, 1.5061, 1.6346, 1.9089, 2.1986, 2.9546, 3.7276),
-}
-RINGS = [
-    # a/h, base, b/a, P / (8 G a eps), u(0) / eps: incompressible layer, a second program of the same method
-    (0.5, "bonded", 0.25, 1.9225, 0.775),
-    (0.5, "bonded", 0.50, 1.8464, 0.554),
-    (0.5, "bonded", 0.75, 1.6183, 0.344),
-    (1.0, "bonded", 0.25, 3.5535, 0.443),
-    (1.0, "bonded", 0.50, 3.1677, 0.030),
-    (1.0, "bonded", 0.75, 2.4056, -0.132),
-    (1.0, "slipping", 0.25, 2.1815, None),
-    (1.0, "slipping", 0.50, 2.0647, None),
-]
 PROFILE = {0.55: 0.73504, 0.60: 0.61834, 0.65: 0.59230, 0.70: 0.59849, 0.75: 0.62600, 0.80: 0.67586, 0.90: 0.90761, 0.95: 1.25743}
 """Pressure over its mean at r / a for b / a = 0.5."""
 LOWEST = {
@@ -71,12 +48,7 @@ def assert_near(computed, expected, tolerance):
     np.testing.assert_allclose(computed, expected, rtol=0, atol=tolerance)
 
 
-def exact_rows():
-    lines = [line for line in EXACT.read_text().splitlines() if not line.startswith("#")]
-    return [(float(r["beta"]), float(r["kappa"]), float(r["u0_over_eps"])) for r in csv.DictReader(lines)]
-
-
-@pytest.mark.parametrize(("beta", "kappa", "axis"), exact_rows())
+@pytest.mark.parametrize(("beta", "kappa", "axis"), half_space_rows())
 def test_half_space_table(beta, kappa, axis, verification_record):
     """Mutants: the printed formula of the thesis, and the first term of the rise in the ratio."""
     punch = solve_annular_punch(beta)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mutants import assert_kills
@@ -18,8 +16,8 @@ from tactsim.experiments.indentation.indentation_3d import Indentation3D, MeshSe
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.revolved import SweepSymmetry
+from tactsim.shipped import CASES
 
-CASES = Path(__file__).parents[2] / "cases"
 THIN = {
     "specimen": Specimen(material=NeoHookean(c10=1000.0), thickness=3e-3, radius=6e-3),
     "body": Annulus(fillet=0.5e-3),

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from functools import cache
 from math import log, pi, sqrt
-from pathlib import Path
 
 import numpy as np
 import pytest
@@ -20,10 +19,10 @@ from tactsim.case import load_case
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.experiments.boundary_value.geometry import BlockGeometry, CylinderGeometry, Span
 from tactsim.results.result import Result, Status
+from tactsim.shipped import CASES
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 Array = np.ndarray
-CASES = Path(__file__).parents[2] / "cases"
 
 
 @cache

@@ -22,6 +22,7 @@ from tactsim.interfaces import Estimator
 from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.localization.estimators.hypotheses import CLASSES
 from tactsim.localization.lump_response import LumpResponse
+from tactsim.outside.text import markdown_table
 from tactsim.units import format_quantity
 
 if TYPE_CHECKING:
@@ -125,17 +126,17 @@ def verdict(content: Mapping[str, Any]) -> str:
 def as_text(content: Mapping[str, Any], figures: Mapping[str, bytes]) -> str:
     """The table in Markdown, true classes down and estimated ones across; a class that does not occur has no row."""
     names = [name.replace("_", " ") for name in content["classes"]]
+    rows = [
+        [shown, *counts, f"{content['recalls'][name]:.0%}"]
+        for name, shown, counts in zip(content["classes"], names, content["counts"], strict=True)
+        if content["recalls"][name] is not None
+    ]
     lines = [
         "# Confusion table",
         "",
         f"{verdict(content)} by `{content['estimator']}`, noise of a reading {format_quantity(content['noise'], 'N')}; "
         f"{content['of_no_class']} samples belong to no class.",
         "",
-        f"| true, estimated across | {' | '.join(names)} | named right |",
-        "|" + " --- |" * (len(names) + 2),
+        *markdown_table(["true, estimated across", *names, "named right"], rows),
     ]
-    for name, shown, counts in zip(content["classes"], names, content["counts"], strict=True):
-        recall = content["recalls"][name]
-        if recall is not None:
-            lines.append(f"| {shown} | {' | '.join(map(str, counts))} | {recall:.0%} |")
     return "\n".join([*lines, "", *(f"![{name}]({name})" for name in figures), ""])

@@ -7,6 +7,7 @@ from typing import Any
 
 from tactsim.dataset.ranking.measures import DRAWN, INTERVAL, LABELS, Ranked
 from tactsim.dataset.ranking.samples import JudgedSamples
+from tactsim.outside.text import markdown_table
 from tactsim.units import format_quantity
 
 SCHEMA = "tactsim/ranking/1"
@@ -104,10 +105,8 @@ def _of_one(one: Ranked) -> list[str]:
 def _table(
     first: str, rows: Sequence[tuple[str, Mapping[str, Any]]], columns: Sequence[tuple[str, tuple[str, ...], str]]
 ) -> list[str]:
-    lines = [f"| {' | '.join([first, *(heading for heading, _, _ in columns)])} |", "|" + " --- |" * (len(columns) + 1)]
-    for name, measures in rows:
-        lines.append(f"| {' | '.join([name, *(_cell(measures, place, unit) for _, place, unit in columns)])} |")
-    return lines
+    cells = ([name, *(_cell(measures, place, unit) for _, place, unit in columns)] for name, measures in rows)
+    return markdown_table([first, *(heading for heading, _, _ in columns)], cells)
 
 
 def _cell(measures: Mapping[str, Any], place: Sequence[str], unit: str) -> str:

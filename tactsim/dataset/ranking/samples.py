@@ -94,7 +94,7 @@ class JudgedSamples:
         )
 
     def added(self, multiple: Array | float) -> Array:
-        """Standard deviation in N of what is added to forces and references, so that their noise is this often the stated one."""
+        """Standard deviation in N of the noise that makes the noise of forces and references a ``multiple`` of the stated one."""
         return np.sqrt(np.maximum(0.0, (np.asarray(multiple) * self.noise) ** 2 - self.own_noise**2))
 
     def readings(self, response: LumpResponse | None = None, *, multiple: float = 1.0, seed: int = 1) -> Iterator[Readings]:

@@ -159,7 +159,7 @@ class Store:
         return ARRAYS in self.attributes
 
     def pending(self) -> Array:
-        """Numbers of the samples that are not computed.
+        """Numbers (n,) of the samples that are not computed.
 
         Raises
         ------

@@ -65,7 +65,7 @@ def computed_chunks(store: Store, variables: Sequence[Variable], status: Array) 
 
 
 def damaged_samples(store: Store, variables: Sequence[Variable]) -> dict[str, Array]:
-    """Why samples must be computed again -> their numbers; chunks that cannot be read are removed, so that others take their
+    """Why samples must be computed again -> their numbers (n,); chunks that cannot be read are removed, so that others take their
     place.
 
     Raises
@@ -229,7 +229,7 @@ def samples_in_words(numbers: Array) -> str:
 
 
 def lost_samples(store: Store, name: str, samples: Array) -> Array:
-    """Those of these computed samples whose value of a variable is gone."""
+    """Those of the computed ``samples`` (n,) whose value of a variable is gone."""
     if name not in store.described:
         return samples
     array = store.described[name]

@@ -15,7 +15,7 @@ from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, kind_of
 from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import refuse_redescribed
-from tactsim.outside.text import one_line
+from tactsim.outside.text import markdown_table, one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
 TAGS = "tags: [tactile, simulation, tactsim]"
@@ -174,8 +174,7 @@ def _limits(stated: str) -> list[str]:
 
 
 def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> list[str]:
-    cells = [" | ".join(plain(cell) for cell in row) for row in rows]
-    return [f"## {title}", f"| {' | '.join(head)} |", "|" + " --- |" * len(head), *(f"| {row} |" for row in cells), ""]
+    return [f"## {title}", *markdown_table(head, (map(plain, row) for row in rows)), ""]
 
 
 def description(path: str | Path) -> str:

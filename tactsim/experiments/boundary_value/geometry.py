@@ -10,8 +10,8 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.mesh.affordable import PER_TETRAHEDRON, check_unknowns
-from tactsim.mesh.graded.mapped import Domain, grid_domain, polar, quarter_disc, spaced
-from tactsim.mesh.revolved import SweepSymmetry, swept
+from tactsim.mesh.graded.mapped import Domain, grid_domain, quarter_disc, spaced
+from tactsim.mesh.revolved import SweepSymmetry, polar, swept
 from tactsim.model import FrozenModel
 from tactsim.units import Length, NonNegative, Positive, format_quantity
 

@@ -77,7 +77,7 @@ class Parts:
         return self.domain.faces[name]
 
     def facets(self, condition: FaceCondition) -> Array:
-        """The facets of a face, or of the part of it that the condition means.
+        """The facets (F, nodes) of the face of a condition, or of the part of the face to which the condition is limited.
 
         Raises
         ------

@@ -17,7 +17,7 @@ from tactsim.model import check_increasing
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.sensors.electronics.charge_amplifier import ChargeAmplifier
-from tactsim.sensors.electronics.film_calibration import slope_and_intercept
+from tactsim.sensors.electronics.film_calibration import read_under, slope_and_intercept
 from tactsim.sensors.films.any_film import AnyFilm
 from tactsim.sensors.films.film import HOLM, Film
 from tactsim.units import Force, Time
@@ -89,7 +89,7 @@ class FilmTest(Experiment):
         for number, (j, i) in enumerate(itertools.product(range(len(forces)), range(len(times))), start=1):
             reached = (forces[j], times[i], *(values[i, j] for values in shown.values()))
             steps.append(StepRecord(number, 0, 0.0, dict(zip(units, map(float, reached), strict=True))))
-        read = self.film.read([0.0, self.reading_time], np.tile(forces, (2, 1)))[-1]
+        read = read_under(self.film, forces, self.reading_time)
         report = self.film.report(forces, read)
         return Course.computed(
             Findings(

@@ -38,7 +38,7 @@ class Wave(FrozenModel):
         return self
 
     def sampled(self, time: Array) -> Array:
-        """Force in N at times in s."""
+        """Force in N at times in s, of their shape."""
         return self.low + (self.high - self.low) * self.share(time)
 
     @property
@@ -48,7 +48,7 @@ class Wave(FrozenModel):
 
     @abstractmethod
     def share(self, time: Array) -> Array:
-        """Part of the way from the smallest to the largest force, between 0 and 1."""
+        """Part of the way from the smallest to the largest force, between 0 and 1, of the shape of the times."""
 
 
 class Chirp(Wave):
@@ -144,7 +144,7 @@ class Record(FrozenModel):
         return float(self._columns[0][-1])
 
     def sampled(self, time: Array) -> Array:
-        """Force in N at times in s."""
+        """Force in N at times in s, of their shape."""
         return np.interp(time, *self._columns)
 
     @cached_property

@@ -135,12 +135,7 @@ class GraspSetup(FrozenModel):
     def tolerance(self) -> float:
         """Largest penetration in m."""
         usual = PENETRATION * self.block.size[2]
-        return self.penetration_tolerance or default_penetration(usual, self._closing, PENETRATION_OF_CLOSING)
-
-    @property
-    def _closing(self) -> float | None:
-        """Largest closing in m that is prescribed; None if a force is."""
-        return max(0.0, self.loading.least_and_most()[1]) if self.loading.control == "displacement" else None
+        return self.penetration_tolerance or default_penetration(usual, self.loading.largest_displacement, PENETRATION_OF_CLOSING)
 
     @property
     def shapes(self) -> tuple[Inclusion, ...]:
@@ -241,7 +236,7 @@ class GraspSetup(FrozenModel):
     @model_validator(mode="after")
     def _kept_out(self) -> Self:
         fillets = {f"{side} jaw's fillet": getattr(self, side).fillet for side in JAWS}
-        lengths = {"closing": self._closing, "block's height": self.block.size[2]}
+        lengths = {"closing": self.loading.largest_displacement, "block's height": self.block.size[2]}
         check_penetration(self.penetration_tolerance, lengths | fillets)
         return self
 

@@ -81,7 +81,7 @@ class TimedIndentation(IndentationSetup, Experiment):
     @property
     def prescribed(self) -> float | None:
         """Largest displacement in m that is prescribed; None if a force is."""
-        return max(0.0, self.loading.least_and_most()[1]) if self.loading.control == "displacement" else None
+        return self.loading.largest_displacement
 
     def drive(self) -> Timed:
         """The history, with steps of time."""

@@ -70,6 +70,12 @@ class Body:
     regions : (E,) index into ``materials``
     volume_stiffness : a; with zero, the elements are those of Taylor and Hood
 
+    Attributes
+    ----------
+    linear : (E,) whether the material is of small strains
+    compliance : (E,) of the volume in 1/Pa, zero where the material is incompressible
+    shear_moduli : (E,) in Pa
+
     Raises
     ------
     InputError
@@ -99,7 +105,8 @@ class Body:
         self.linear = np.array([m.small_strain for m in materials])[self.regions]
         self.forms = tuple(compiled_form(material) for material in materials)
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
-        resisting = volume_stiffness * np.array([m.shear_modulus for m in materials])[self.regions]
+        self.shear_moduli = np.array([m.shear_modulus for m in materials])[self.regions]
+        resisting = volume_stiffness * self.shear_moduli
         self.volume_stiffness = resisting / (1 + resisting * self.compliance)
 
     def with_relaxation(self, relaxation: RelaxationStep | None) -> Body:

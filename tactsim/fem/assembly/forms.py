@@ -27,6 +27,7 @@ from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.symmetric import FULL
 
 
 def residual(body: Body, unknowns: Array) -> Array:
@@ -106,7 +107,7 @@ def _pressure_stress(F: Array, p: Array) -> Callable[..., Array]:
 
 def _history_tensor(body: Body) -> Array:
     """The stress of the history as a full symmetric tensor (3, 3, E, Q)."""
-    return body.relaxation.stress[np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])]  # type: ignore[union-attr]
+    return body.relaxation.stress[FULL]  # type: ignore[union-attr]
 
 
 def _history_term(body: Body, F: Array) -> Array:

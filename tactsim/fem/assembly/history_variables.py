@@ -24,6 +24,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.fem.assembly import history_kernels
 from tactsim.fem.assembly.body import Body, Kinematics, RelaxationStep
+from tactsim.fem.assembly.symmetric import MULTIPLICITY, ROWS_AND_COLUMNS
 
 ROUND_OFF = 128 * np.finfo(float).eps
 """Round-off of a stress over the shear modulus, and of the forces that it makes: F is one plus small numbers."""
@@ -37,10 +38,6 @@ ALL_BUT_GONE = 0.01
 """Part of the lasting stress below which the whole stress is no measure of an error."""
 MOST_EARLIER = 3
 """States that the error of a step needs."""
-COMPONENTS = (np.array([0, 1, 2, 0, 1, 0]), np.array([0, 1, 2, 1, 2, 2]))
-"""Rows and columns of the six components of a symmetric tensor."""
-DOUBLE = np.array([1.0, 1.0, 1.0, 2.0, 2.0, 2.0])
-"""Multiplicity of each component in the tensor."""
 IN_SECTION = 4
 """Components 11, 22, 33 and 12, which alone are not zero in a section."""
 
@@ -85,7 +82,7 @@ class HistoryVariables:
     series: Series
     elastic: Array
     overstress: Array
-    components: int = len(DOUBLE)
+    components: int = len(MULTIPLICITY)
     """How many of the components, the first ones, may differ from zero: 4 in a section."""
     earlier: tuple[tuple[Array, float], ...] = ()
 
@@ -142,7 +139,7 @@ def elastic_stress(body: Body, state: Kinematics) -> Array:
             mine = body.regions == index
             F = state.F[:, :, mine]
             P = material.first_piola_kirchhoff(F, np.zeros(F.shape[2:]))
-            stress[:, mine] = (P if body.linear[mine].all() else _solved(F, P))[COMPONENTS]
+            stress[:, mine] = (P if body.linear[mine].all() else _solved(F, P))[ROWS_AND_COLUMNS]
     return stress
 
 
@@ -150,8 +147,8 @@ def mean_stress(body: Body, state: Kinematics, stress: Array) -> Array:
     """Mean Cauchy stress (E, Q) in Pa of a second Piola-Kirchhoff stress (6, E, Q) in Pa: its hydrostatic part."""
     if not stress.any():
         return np.zeros(state.J.shape)
-    C = np.einsum("iJeq,iKeq->JKeq", state.F, state.F)[COMPONENTS]
-    spatial = np.einsum("c,ceq,ceq->eq", DOUBLE, C, stress) / (3 * state.J)
+    C = np.einsum("iJeq,iKeq->JKeq", state.F, state.F)[ROWS_AND_COLUMNS]
+    spatial = np.einsum("c,ceq,ceq->eq", MULTIPLICITY, C, stress) / (3 * state.J)
     return np.where(body.linear[:, None], stress[:3].sum(axis=0) / 3, spatial)
 
 
@@ -164,7 +161,7 @@ def _solved(F: Array, P: Array) -> Array:
 def size_of(body: Body, stress: Array) -> float:
     """Root mean square of a symmetric stress (6, E, Q) over the volume, in Pa."""
     weights = body.points.weights
-    return float(np.sqrt(DOUBLE @ np.einsum("ceq,ceq->c", weights * stress, stress) / weights.sum()))
+    return float(np.sqrt(MULTIPLICITY @ np.einsum("ceq,ceq->c", weights * stress, stress) / weights.sum()))
 
 
 def step_error(body: Body, variables: HistoryVariables, least: float = 0.0) -> float:
@@ -189,8 +186,7 @@ def step_error(body: Body, variables: HistoryVariables, least: float = 0.0) -> f
         earlier_bend = 2 * (slopes[1] - (before - oldest) / length) / (first + length)
         third = 3 * (bend - earlier_bend) / (first + last + length)
         missed, weight = last**2 * (last + first) / 6 * third, np.minimum(1 / h, MEAN_OF_CUBIC)
-    moduli = np.array([material.shear_modulus for material in body.materials])[body.regions]
-    noise = NOISE_GROWTH * ROUND_OFF * max(last / length for _, length in variables.earlier) ** 2 * moduli[:, None]
+    noise = NOISE_GROWTH * ROUND_OFF * max(last / length for _, length in variables.earlier) ** 2 * body.shear_moduli[:, None]
     missed = np.where(np.abs(missed) > noise, missed, 0.0)
     lasting = size_of(body, variables.series.equilibrium[:, None] * variables.elastic)
     size = max(size_of(body, variables.stress), ALL_BUT_GONE * lasting, least)

@@ -10,12 +10,11 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.fem.assembly.pattern import Pattern
 from tactsim.fem.assembly.space import TaylorHood, VolumePoints
+from tactsim.fem.assembly.symmetric import FULL
 from tactsim.interfaces import Material
 
 CHUNK = 512
 """Elements computed at once, so that the tangent of their points takes a few tens of megabytes."""
-SYMMETRIC = np.array([[0, 3, 5], [3, 1, 4], [5, 4, 2]])
-"""Place of each entry of a symmetric tensor among its six components 11, 22, 33, 12, 23, 13."""
 
 
 @dataclass(frozen=True)
@@ -80,7 +79,7 @@ class InterpretedPart:
         if state.scale is None or state.history_stress is None:
             return stress
         volumetric = state.pressure * self.material.volume_change_gradient(state.F)
-        history_stress = state.history_stress[SYMMETRIC]
+        history_stress = state.history_stress[FULL]
         left = history_stress if self.material.small_strain else np.einsum("iKeq,KJeq->iJeq", state.F, history_stress)
         return (stress - volumetric) * state.scale[:, None] + volumetric + left
 
@@ -92,9 +91,7 @@ class InterpretedPart:
         volumetric = moduli - self.material.tangent(state.F, 0 * state.pressure)
         moduli = (moduli - volumetric) * state.scale[:, None] + volumetric
         return (
-            moduli
-            if self.material.small_strain
-            else moduli + np.einsum("ik,JLeq->iJkLeq", np.eye(3), state.history_stress[SYMMETRIC])
+            moduli if self.material.small_strain else moduli + np.einsum("ik,JLeq->iJkLeq", np.eye(3), state.history_stress[FULL])
         )
 
     @property

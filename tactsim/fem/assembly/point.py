@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import numba
 
-SYMMETRIC_SLOTS = (0, 3, 5, 3, 1, 4, 5, 4, 2)
-"""Place of each entry of a symmetric tensor among its six components 11, 22, 33, 12, 23, 13."""
+from tactsim.fem.assembly.symmetric import SLOTS
 
 
 @numba.njit(cache=True, inline="always")
@@ -135,10 +134,10 @@ def add_history_stress(F, history_stress, linear, work):  # type: ignore[no-unty
     for i in range(3):
         for j in range(3):
             if linear:
-                work[0, 3 * i + j] += history_stress[SYMMETRIC_SLOTS[3 * i + j]]
+                work[0, 3 * i + j] += history_stress[SLOTS[3 * i + j]]
             else:
                 for k in range(3):
-                    work[0, 3 * i + j] += F[3 * i + k] * history_stress[SYMMETRIC_SLOTS[3 * k + j]]
+                    work[0, 3 * i + j] += F[3 * i + k] * history_stress[SLOTS[3 * k + j]]
 
 
 @numba.njit(cache=True, inline="always")
@@ -148,7 +147,7 @@ def add_history_tangent(history_stress, linear, A):  # type: ignore[no-untyped-d
         for i in range(3):
             for j in range(3):
                 for o in range(3):
-                    A[3 * i + j, 3 * i + o] += history_stress[SYMMETRIC_SLOTS[3 * j + o]]
+                    A[3 * i + j, 3 * i + o] += history_stress[SLOTS[3 * j + o]]
 
 
 @numba.njit(cache=True)
@@ -159,7 +158,7 @@ def pulled_back(work, linear, S):  # type: ignore[no-untyped-def]
             value = work[0, 3 * i + j]
             if not linear:
                 value = work[3, i] * work[0, j] + work[3, 3 + i] * work[0, 3 + j] + work[3, 6 + i] * work[0, 6 + j]
-            S[SYMMETRIC_SLOTS[3 * i + j]] = value
+            S[SLOTS[3 * i + j]] = value
 
 
 @numba.njit(cache=True, inline="always")

@@ -129,7 +129,7 @@ class MirroredPart:
         return self._surfaces[surface]
 
     def tangent(self, data: Array) -> Array:
-        """What adds to the entries of the part's tangent of ``data`` that adds to those of the whole's."""
+        """The share of the part's tangent entries in ``data``, which a load or a contact adds to the entries of the whole."""
         places, sides = self._entries
         return data[places] / sides
 

@@ -3,20 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
 from tactsim.array import Array
+from tactsim.fem.paths.states import PathState, between
 
 MOST_ESTIMATES = 4
-"""Interpolations in a row; if they have not found the root, the bracket is halved by turns."""
-
-
-class PathState(Protocol):
-    """A state of the path."""
-
-    @property
-    def unknowns(self) -> Array:
-        """Its unknowns."""
+"""Interpolations in a row; if they have not found the root, every other step halves the bracket."""
 
 
 State = TypeVar("State", bound=PathState)
@@ -42,13 +35,6 @@ def located(
         return value(states[place])
 
     return states[crossing(value_at, {place: value(state) for place, state in states.items()}, (low, high), tolerance)]
-
-
-def between(states: Mapping[float, PathState], place: float) -> Array:
-    """Unknowns at a place by interpolation between the nearest states on both sides of it, given by their places."""
-    low, high = max(p for p in states if p < place), min(p for p in states if p > place)
-    share = (place - low) / (high - low)
-    return (1 - share) * states[low].unknowns + share * states[high].unknowns
 
 
 def crossing(

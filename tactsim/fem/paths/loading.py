@@ -11,23 +11,16 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.paths.event import located
 from tactsim.fem.paths.progress import Headway, check_steps
+from tactsim.fem.paths.states import PathState, beyond
 from tactsim.units import format_quantity
 
 
-class LoadedState(Protocol):
+class LoadedState(PathState, Protocol):
     """An accepted equilibrium at a value of the load parameter."""
 
     @property
     def load(self) -> float:
         """Load parameter."""
-
-    @property
-    def unknowns(self) -> Array:
-        """Unknowns of the body."""
-
-    @property
-    def iterations(self) -> int:
-        """Newton iterations it took."""
 
 
 State = TypeVar("State", bound=LoadedState)
@@ -91,15 +84,16 @@ class PathFollower(Generic[State]):
             If the largest step is so short that there would be too many.
         """
         check_steps((target - start.load) / self._control.largest, f"a largest step of {self._control.largest:.3g}")
-        before, now, step, headway = None, start, self._control.first, headway or Headway(start.load, target, self._control.unit)
+        now, path, step = start, {start.load: start}, self._control.first
+        headway = headway or Headway(start.load, target, self._control.unit)
         while now.load < target * (1 - 1e-12):
             load = min(now.load + step, target)
             try:
-                reached = self._advance(now, load, _predicted(before, now, load))
+                reached = self._advance(now, load, beyond(path, load - now.load))
                 happened = event is not None and event.value(reached) >= 0
                 if event is not None and happened:
-                    path = {state.load: state for state in (before, now, reached) if state is not None}
-                    reached = located(partial(self._advance, now), event.value, path, event.tolerance)
+                    around = {**path, reached.load: reached}
+                    reached = located(partial(self._advance, now), event.value, around, event.tolerance)
             except ConvergenceError as error:
                 self.rejected += 1
                 step = (load - now.load) * self._control.cut
@@ -109,16 +103,8 @@ class PathFollower(Generic[State]):
                 headway.spent(error.solutions, now.load, (target - now.load) / self._control.largest, error)
                 continue
             step = self._control.next_step(max(step, load - now.load), reached.iterations)
-            before, now = now, reached
+            path, now = {now.load: now, reached.load: reached}, reached
             yield now, happened
             if happened:
                 return
             headway.spent(now.iterations, now.load, (target - now.load) / self._control.largest)
-
-
-def _predicted(before: State | None, now: State, load: float) -> Array:
-    """Unknowns at ``load`` by extrapolating the last step."""
-    if before is None:
-        return now.unknowns
-    share = (load - now.load) / (now.load - before.load)
-    return now.unknowns + min(share, 2.0) * (now.unknowns - before.unknowns)

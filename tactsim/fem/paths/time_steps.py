@@ -11,22 +11,15 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.paths.event import located
 from tactsim.fem.paths.progress import Headway, check_steps
+from tactsim.fem.paths.states import PathState, beyond
 
 
-class TimedState(Protocol):
+class TimedState(PathState, Protocol):
     """An accepted state at a time."""
 
     @property
     def time(self) -> float:
         """Time in s."""
-
-    @property
-    def unknowns(self) -> Array:
-        """What is extrapolated as the first guess of the next step."""
-
-    @property
-    def iterations(self) -> int:
-        """Newton iterations it took."""
 
 
 State = TypeVar("State", bound=TimedState)
@@ -89,20 +82,20 @@ class TimeMarcher(Generic[State]):
             If there would be too many steps.
         """
         check_steps((stops[-1] - start.time) / largest + len(stops), f"a longest step of {largest:.3g} s")
-        before, now, wanted, headway = None, start, min(self._control.first, largest), Headway(start.time, stops[-1], "s")
+        now, path, wanted = start, {start.time: start}, min(self._control.first, largest)
+        headway = Headway(start.time, stops[-1], "s")
         for number, stop in enumerate(stops):
             while now.time < stop * (1 - 1e-12):
                 step = _landing(stop - now.time, min(wanted, largest))
                 try:
-                    reached = self._advance(now, now.time + step, _predicted(before, now, step))
+                    reached = self._advance(now, now.time + step, beyond(path, step))
                     error = self._error(reached)
                     if not self._control.accepts(error):
                         raise _TooLong(f"the error {error:.1e} of a step of {step:.3g} s is above {self._control.tolerance:g}")
                     happened = event is not None and event.value(reached) >= 0
                     if event is not None and happened:
-                        path = {state.time: state for state in (before, now, reached) if state is not None}
-                        width = event.tolerance * (reached.time - now.time)
-                        reached = located(partial(self._advance, now), event.value, path, width)
+                        around, width = {**path, reached.time: reached}, event.tolerance * (reached.time - now.time)
+                        reached = located(partial(self._advance, now), event.value, around, width)
                 except ConvergenceError as failure:
                     self.rejected += 1
                     error = error if isinstance(failure, _TooLong) else 4 * self._control.tolerance
@@ -114,7 +107,7 @@ class TimeMarcher(Generic[State]):
                     continue
                 longer = self._control.next_step(step, error, reached.iterations)
                 wanted = longer if step >= wanted else max(wanted, longer)
-                before, now = now, reached
+                path, now = {now.time: now, reached.time: reached}, reached
                 yield now, happened
                 if happened:
                     return
@@ -130,11 +123,3 @@ def _landing(remaining: float, step: float) -> float:
     if step >= remaining * (1 - 1e-9):
         return remaining
     return remaining / 2 if step > remaining / 2 else step
-
-
-def _predicted(before: TimedState | None, now: TimedState, step: float) -> Array:
-    """Unknowns one step on by extrapolating the last step."""
-    if before is None or now.time == before.time:
-        return now.unknowns
-    share = step / (now.time - before.time)
-    return now.unknowns + min(share, 2.0) * (now.unknowns - before.unknowns)

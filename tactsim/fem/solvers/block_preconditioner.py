@@ -52,7 +52,7 @@ class BlockPreconditioned(IterativeSolver):
     def __init__(self, body: Body):
         self._displacements, self._dilatation = TwoLevel(body), dilatation(body)
         self._blocks: TangentBlocks | None = None
-        shear = _moduli(body)
+        shear = body.shear_moduli
         self._mass = pressure_mass(body, (4 / 3 + BULK) * shear + body.volume_stiffness)
         self._lumped = np.asarray(pressure_mass(body, BULK * shear).sum(axis=1)).ravel()
         self._split, self._dim = body.space.displacement_size, body.space.dim
@@ -166,7 +166,7 @@ def dilatation(body: Body) -> bsr_matrix:
     space, points = body.space, body.points
     count, dim = len(space.nodes), space.dim
     rows, columns = np.broadcast_arrays(space.elements[:, :, None], space.elements[:, None, :])
-    places, weights = (rows.ravel(), columns.ravel()), _moduli(body)[:, None] * points.weights
+    places, weights = (rows.ravel(), columns.ravel()), body.shear_moduli[:, None] * points.weights
     divergence = [points.gradients[..., i] + (points.hoop if i == 0 else 0.0) for i in range(dim)]
     parts = {}
     for i in range(dim):
@@ -175,8 +175,3 @@ def dilatation(body: Body) -> bsr_matrix:
             parts[i, j] = csr_matrix((entries.ravel(), places), shape=(count, count))
     data = np.stack([[parts[i, j].data for j in range(dim)] for i in range(dim)]).transpose(2, 0, 1)
     return bsr_matrix((np.ascontiguousarray(data), parts[0, 0].indices, parts[0, 0].indptr), shape=(count * dim, count * dim))
-
-
-def _moduli(body: Body) -> Array:
-    """Shear modulus (E,) in Pa of each element."""
-    return np.array([material.shear_modulus for material in body.materials])[body.regions]

@@ -180,10 +180,9 @@ def linear_interpolation(space: TaylorHood) -> csr_matrix:
 
 def tissue_diagonal(body: Body) -> Array:
     """Integral (n,) in N/m of the shear modulus times the squared gradient of each node's function, plus the hoop term."""
-    moduli = np.array([material.shear_modulus for material in body.materials])[body.regions]
     points = body.points
     square = (points.gradients**2).sum(axis=-1) + points.hoop**2
-    return np.bincount(body.space.elements.ravel(), np.einsum("e,eq,eqa->ea", moduli, points.weights, square).ravel())
+    return np.bincount(body.space.elements.ravel(), np.einsum("e,eq,eqa->ea", body.shear_moduli, points.weights, square).ravel())
 
 
 def blocked(nodes: csr_matrix, free: Array) -> bsr_matrix:

@@ -34,7 +34,7 @@ BEAT = 0.5
 REST, LONGEST_REST = 0.1, 3.0
 """Time in s from an answer to the next one: words cannot be read faster, and what took long stands as long, up to the longest."""
 NOTHING: dict[str, Any] = {"present": None, "words": [], "errors": [], "noise": "", "inclusions": []}
-"""An estimate that there is not."""
+"""What the page shows where there is no estimate."""
 Make = Callable[[Watch], str]
 Waiting = Callable[[Watch, float], str]
 Made = TypeVar("Made")

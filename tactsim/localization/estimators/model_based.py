@@ -13,7 +13,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
-from tactsim.localization.candidates import RadiusLimits, ball_candidates, no_body, radius_steps, untabulated
+from tactsim.localization.candidates import RadiusLimits, ball_candidates, centres_and_room, no_body, radius_steps, untabulated
 from tactsim.localization.evidence import Change, nothing
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
@@ -193,8 +193,7 @@ class ModelBasedEstimator(Estimator):
         chosen = np.flatnonzero((response.radii >= self.radii[0] - 1e-12) & (response.radii <= self.radii[1] + 1e-12))
         if not len(chosen):
             raise untabulated(response, self.radii)
-        grid = np.stack(np.meshgrid(*response.axes, indexing="ij"), axis=-1).reshape(-1, 3)
-        room = np.minimum(grid, size - grid).min(axis=1)
+        grid, room = centres_and_room(response.axes, size)
         cells = [np.flatnonzero(room >= response.radii[k] + self.gap) for k in chosen]
         signals = [response.values[k].reshape(len(grid), -1)[inside] for k, inside in zip(chosen, cells, strict=True)]
         radii = np.repeat(response.radii[chosen], [len(inside) for inside in cells])

@@ -99,7 +99,7 @@ def straight_pieces(places: Array) -> tuple[Array, Array]:
 
 
 def cut(pieces: Array, facets: Array, axis: int, borders: Array) -> tuple[Array, Array]:
-    """The triangles cut where their coordinate ``axis`` is one of the ascending ``borders``: none crosses one any more.
+    """The triangles cut where their coordinate ``axis`` is one of the ascending ``borders``, so that none crosses a border.
 
     All triangles are cut at once, each at the middle one of the borders that it crosses, so that the rounds grow only like the
     logarithm of the number of borders.

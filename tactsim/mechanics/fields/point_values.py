@@ -12,14 +12,13 @@ from tactsim.errors import InputError
 from tactsim.fem.assembly.body import Body, Kinematics
 from tactsim.fem.assembly.history_variables import elastic_stress
 from tactsim.fem.assembly.space import quadratic_values
+from tactsim.fem.assembly.symmetric import FULL
 from tactsim.units import format_quantity
 
 INSIDE = 1e-6
 """How far beyond an element, in parts of it, a point may lie and still count as in it: round-off, and a curved side's sagitta."""
 MOST_ITERATIONS = 20
 """Newton's iterations for the place in a curved element."""
-_SYMMETRIC = ((0, 3, 5), (3, 1, 4), (5, 4, 2))
-"""Place of each entry of a symmetric tensor among its components 11, 22, 33, 12, 23, 13."""
 
 
 def cauchy_stress(body: Body, unknowns: Array, kinematics: Kinematics, isochoric: Array | None = None) -> Array:
@@ -29,7 +28,7 @@ def cauchy_stress(body: Body, unknowns: Array, kinematics: Kinematics, isochoric
     linear elasticity is per reference area, as that theory has it.
     """
     stress = elastic_stress(body, kinematics) if isochoric is None else isochoric
-    S, F = stress[np.array(_SYMMETRIC)], kinematics.F
+    S, F = stress[FULL], kinematics.F
     linear = body.linear[None, None, :, None]
     spatial = np.where(linear, S, np.einsum("iJeq,JKeq,kKeq->ikeq", F, S, F) / kinematics.J)
     return spatial + np.eye(3)[:, :, None, None] * body.pressure(unknowns)

@@ -48,7 +48,7 @@ class SufficientContact:
     def equilibrium(
         self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
     ) -> ContactEquilibrium:
-        """The equilibrium at prescribed values, reached from ``now``; of a tighter one that there is not, the wider remains.
+        """The equilibrium at prescribed values, reached from ``now``; where no tighter one is reached, the last one stays.
 
         Raises
         ------

@@ -181,6 +181,11 @@ class Loading(FrozenModel):
         waves = [s.value + sign * wave.amplitude for s in self.segments() for wave in s.harmonics for sign in (-1, 1)]
         return min([*ends[1:], *waves]), max([*ends, *waves])
 
+    @property
+    def largest_displacement(self) -> float | None:
+        """Largest displacement in m that is prescribed, 0 if all are negative; None if a force is."""
+        return None
+
     def _course(self) -> Iterator[tuple[tuple[Segment, ...], float]]:
         """The segments of each piece and the value at its end."""
         start, value = 0.0, 0.0
@@ -233,6 +238,11 @@ class DisplacementLoading(Loading):
     control: Literal["displacement"]
     pieces: pieces_of(Length, "Displacement")  # type: ignore[valid-type]
     """Displacement over time, one piece after the other, from zero."""
+
+    @property
+    def largest_displacement(self) -> float:
+        """Largest displacement in m that is prescribed, 0 if all are negative."""
+        return max(0.0, self.least_and_most()[1])
 
 
 AnyLoading = Annotated[ForceLoading | DisplacementLoading, Field(discriminator="control")]

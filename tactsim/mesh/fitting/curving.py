@@ -19,7 +19,7 @@ from tactsim.mesh.fitting.labelling import Interfaces, Surfaces, interfaces
 from tactsim.mesh.fitting.layers import Layers
 from tactsim.mesh.fitting.smoothing import smoothed
 from tactsim.mesh.fitting.wedges import side_patches, without_wedges
-from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
+from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh, row_numbers
 from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes
 
 LEAST_CURVATURE = 0.2
@@ -154,23 +154,22 @@ def curved(mesh: QuadraticMesh, walls: Interfaces, constraints: Constraints, lay
     edges, middles = mesh.edges()
     sides = np.concatenate([np.sort(walls.triangles[:, list(pair)], axis=1) for pair in ((0, 1), (1, 2), (0, 2))])
     patch = np.tile(walls.patch, 3)
-    unique, number = np.unique(sides, axis=0, return_inverse=True)
-    on = np.zeros((len(unique), constraints.on.shape[1]), bool)
-    on[number.reshape(-1), patch] = True
+    _, first, number = np.unique(row_numbers(sides), return_index=True, return_inverse=True)
+    on = np.zeros((len(first), constraints.on.shape[1]), bool)
+    on[number, patch] = True
     bent = on[:, len(FACES) :].any(axis=1)
-    keys = edges @ [mesh.corner_count, 1]
-    fitted_middles = middles[np.searchsorted(keys, unique[bent] @ [mesh.corner_count, 1])]
+    curving, keys = sides[first[bent]], edges @ [mesh.corner_count, 1]
+    fitted_middles = middles[np.searchsorted(keys, curving @ [mesh.corner_count, 1])]
     fitting = Constraints(constraints.patches, on[bent], constraints.size).restored(mesh.nodes[fitted_middles])
     beside, pairs, moves = layers.bulges(mesh.nodes, edges, constraints)
-    wall, owner = np.unique(np.vstack([unique[bent], pairs]), axis=0, return_inverse=True)
-    owner = owner.reshape(-1)
+    _, owner = np.unique(row_numbers(np.vstack([curving, pairs])), return_inverse=True)
     nodes, moved = mesh.nodes.copy(), np.concatenate([fitted_middles, middles[beside]])
     ends = np.vstack([fitting, mesh.nodes[middles[beside]] + moves])
     starts, nodes[moved] = mesh.nodes[moved], ends
-    share = np.ones(len(wall))
+    share = np.ones(owner.max(initial=-1) + 1)
     while True:
         poor = jacobian_ratio(nodes, mesh.elements) < LEAST_CURVATURE
-        touched = np.zeros(len(wall), bool)
+        touched = np.zeros(len(share), bool)
         touched[owner[np.isin(moved, mesh.elements[poor, 4:])]] = True
         touched &= share > 0
         if not touched.any():

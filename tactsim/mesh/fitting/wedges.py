@@ -27,9 +27,10 @@ def side_patches(simplices: Array, walls: Interfaces) -> Array:
 
 
 def without_wedges(corners: Array, simplices: Array, labels: Array, walls: Interfaces) -> tuple[Array, Array, Array, Interfaces]:
-    """The mesh with no tetrahedron that has a side under a jaw and one in a free face.
+    """The mesh with no tetrahedron that has a side under a jaw and a side in a free face.
 
-    The edge between the two corners that such a one does not share with the edge of the block is bisected, in all that have it.
+    The edge between the two corners that it does not share with the edge of the block is bisected, in every
+    tetrahedron that has it.
     """
     while len(edges := _opposite_edges(simplices, walls)):
         for edge in edges:

@@ -30,7 +30,7 @@ from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.graded.rings import BALL_REGION, swept_cells
 from tactsim.mesh.graded.sections import Hollow, as_hollow, leading_axis
 from tactsim.mesh.graded.side_by_side import Bundle, bundle_of
-from tactsim.mesh.structured_block import SIDES, grid, product, ranks
+from tactsim.mesh.structured_block import SIDES, grid, halved_sides, product, ranks
 from tactsim.mesh.tetrahedra import mesh_key
 
 ATTEMPTS = 3
@@ -248,9 +248,7 @@ def _order(places: Array) -> Array:
 def _sixths(cells: Array, order: Array) -> Array:
     """Six tetrahedra for each cell (H, 8): from its first corner to the two triangles of each side beyond, cut alike."""
     sides = cells[:, SIDES]
-    start = order[sides].argmin(axis=2)
-    turned = np.take_along_axis(sides, (start[:, :, None] + np.arange(4)) % 4, axis=2)
-    triangles = np.stack([turned[:, :, [0, 1, 2]], turned[:, :, [0, 2, 3]]], axis=2)
+    triangles = halved_sides(sides, order)
     apex = np.take_along_axis(cells, order[cells].argmin(axis=1)[:, None], axis=1)
     beyond = (sides != apex[:, :, None]).all(axis=2)
     chosen = triangles[beyond][:, :, ::-1]  # (3 H, 2, 3), by cell

@@ -259,7 +259,7 @@ def _on_box(steps: Array, first: Array, shape: Sequence[int]) -> Array:
 def _grid_corners(bricks: Bricks) -> Array:
     """Corners (n, 3) of the whole grid, as if the boxes held plain cells."""
     shape = [len(away) for away in bricks.away]
-    index = np.stack(np.meshgrid(*(np.arange(n) for n in shape), indexing="ij"), axis=-1).reshape(-1, 3)
+    index = product([np.arange(n) for n in shape])
     corners = np.empty(index.shape)
     for axis in range(3):
         others = np.max([bricks.away[k][index[:, k]] for k in range(3) if k != axis], axis=0)

@@ -65,7 +65,7 @@ def from_boxes(lines: int, first: ArrayLike, across: int) -> Array:
 
 
 def from_box(steps: Array, half: float) -> Array:
-    """Places of lines so many steps from the middle of a box, whose sides are ``half`` steps, and one, away."""
+    """Places of lines by their ``steps`` from the middle of a box: 0 there, 1 at its sides, which are ``half`` steps away."""
     return np.where(steps > half, 1 + steps - half, steps / half)
 
 

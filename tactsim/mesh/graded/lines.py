@@ -102,7 +102,12 @@ def _through(left: Array, center: float, length: float, shares: Array, settings:
     """Ascending places in m from face to face: ``left`` (2,) in m before and after a box of cells around a centre."""
     before, after = (spaced(float(span), settings) for span in left)
     within = np.interp(shares, [-1, 0, 1], [left[0], center, length - left[1]])
-    return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
+    return _end_to_end(before, within, length - after)
+
+
+def _end_to_end(before: Array, within: Array, after: Array) -> Array:
+    """Ascending places in m before, within and, given from the last one back, after a box, each of its sides once."""
+    return np.concatenate([before[:-1], within, after[-2::-1]])
 
 
 def room_left(gaps: Array, settings: BlockMeshSettings, *, pressed: bool) -> Array:
@@ -137,6 +142,11 @@ def spaced(length: float, settings: BlockMeshSettings) -> Array:
     steps = np.array(thickness)
     if len(steps) == 1:
         return np.array([0.0, length])
+    return _stretched(steps, length)
+
+
+def _stretched(steps: Array, length: float) -> Array:
+    """Ascending places in m from 0 to ``length`` at the ends of steps of which all but the first are stretched to fit."""
     steps[1:] *= (length - steps[0]) / steps[1:].sum()
     return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), length)
 
@@ -174,7 +184,7 @@ def _across(
     """Ascending places in m from face to face through one box, with given numbers of cells before and after it."""
     before, after = (outer_places(float(s), count, settings) for s, count in zip(span, counts, strict=True))
     within = np.interp(shares, [-1, 0, 1], [span[0], center, length - span[1]])
-    return np.concatenate([before[:-1], within, (length - after)[-2::-1]])
+    return _end_to_end(before, within, length - after)
 
 
 def outer_places(span: float, count: int, settings: BlockMeshSettings) -> Array:
@@ -183,8 +193,7 @@ def outer_places(span: float, count: int, settings: BlockMeshSettings) -> Array:
     steps = np.minimum(thickness * (1 + settings.growth) ** np.arange(count), settings.size)
     if count < 2 or thickness * count >= span:
         return np.linspace(0.0, span, count + 1)
-    steps[1:] *= (span - steps[0]) / steps[1:].sum()
-    return np.append(np.concatenate([[0.0], np.cumsum(steps[:-1])]), span)
+    return _stretched(steps, span)
 
 
 def knots_between(along: Array, other: Array, sides: Array, *, length: float) -> tuple[list[float], list[int]]:

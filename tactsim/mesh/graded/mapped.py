@@ -88,7 +88,7 @@ def grid_domain(lines: Sequence[Array], faces: Sequence[tuple[str, str]], mirror
 def _crossed(lines: Sequence[Array]) -> QuadraticMesh:
     """Four triangles for each cell, around its middle."""
     nx, ny = (len(line) for line in lines)
-    corners = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 2)
+    corners = product(lines)
     index = np.arange(nx * ny).reshape(nx, ny)
     around = np.stack([index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]], axis=-1).reshape(-1, 4)
     middles = len(corners) + np.arange(len(around))
@@ -101,14 +101,6 @@ def _twelve_to_a_cell(lines: Sequence[Array]) -> QuadraticMesh:
     corners = product(lines)
     simplices, corners = twelfths(grid([len(line) - 1 for line in lines]), corners, np.arange(len(corners)))
     return quadratic_mesh(corners, simplices)
-
-
-def polar(nodes: Array) -> Array:
-    """Places (n, 2) in the plane of nodes (n, 2) given by radius in m and angle in rad; exact on both axes."""
-    r, angle = nodes.T
-    cosine, sine = np.cos(angle), np.sin(angle)
-    cosine, sine = (np.where(np.abs(part) < 1e-14, 0.0, part) for part in (cosine, sine))
-    return np.column_stack([r * cosine, r * sine])
 
 
 def quarter_disc(nodes: Array) -> Array:

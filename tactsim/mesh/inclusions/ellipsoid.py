@@ -7,6 +7,7 @@ from typing import ClassVar, Literal, Self
 import numpy as np
 import scipy
 
+from tactsim.analytic.sphere_points import sphere_points
 from tactsim.array import Array
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import BallImage, Point, Solid, Triangles
@@ -84,7 +85,7 @@ class EllipsoidSolid(Solid):
     def triangles(self, edge: float) -> Triangles:
         """Hull of the image of a spiral of points on the unit sphere."""
         count = max(40, round(2 * np.pi * self.semi_axes.max() ** 2 / (EQUILATERAL * edge**2)))
-        unit = spiral(count)
+        unit = sphere_points(count)
         faces = outward(unit, scipy.spatial.ConvexHull(unit).simplices, np.zeros(3))
         return unit * self.semi_axes @ self.turn.T + self.center, faces
 
@@ -119,15 +120,3 @@ def nearest_on_ellipsoid(points: Array, semi_axes: Array) -> Array:
     near = axes**2 * y / (upper[:, None] + excess)
     near /= np.linalg.norm(near / axes, axis=1, keepdims=True)
     return np.copysign(near, points) * scale
-
-
-def spiral(count: int) -> Array:
-    """Evenly spread points (count, 3) on the unit sphere.
-
-    Source: Gonzalez 2010, Mathematical Geosciences 42, 49-64, doi:10.1007/s11004-009-9257-x.
-    """
-    step = np.arange(count) + 0.5
-    height = 1 - 2 * step / count
-    angle = np.pi * (1 + np.sqrt(5)) * step
-    radius = np.sqrt(1 - height**2)
-    return np.stack([radius * np.cos(angle), radius * np.sin(angle), height], axis=1)

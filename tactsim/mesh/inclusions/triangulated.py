@@ -9,6 +9,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.solid import Solid, Triangles
 from tactsim.mesh.inclusions.crossing import crossing_pair
+from tactsim.mesh.quadratic import row_numbers
 
 FIRST_CANDIDATES = 12
 CHUNK = 20_000
@@ -49,7 +50,7 @@ class TriangulatedSolid(Solid):
         self._reach = float(np.linalg.norm(corners - self._centres[:, None], axis=2).max())
         self._tree = scipy.spatial.cKDTree(self._centres)
         self._at_vertex = _vertex_normals(corners, self._normals, self.faces, len(self.vertices))
-        self._at_edge = _edge_normals(self._normals, self.faces, len(self.vertices))
+        self._at_edge = _edge_normals(self._normals, self.faces)
 
     def project(self, points: Array) -> tuple[Array, Array]:
         """Nearest points and pseudonormals there, both (n, 3)."""
@@ -168,10 +169,10 @@ def _vertex_normals(corners: Array, normals: Array, faces: Array, count: int) ->
     return total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-300)
 
 
-def _edge_normals(normals: Array, faces: Array, count: int) -> Array:
+def _edge_normals(normals: Array, faces: Array) -> Array:
     """Mean of the normals of the two faces at the edge opposite to each corner (m, 3, 3)."""
     edges = np.sort(np.stack([faces[:, [1, 2]], faces[:, [2, 0]], faces[:, [0, 1]]], axis=1), axis=2)
-    _, number = np.unique((edges[..., 0] * count + edges[..., 1]).ravel(), return_inverse=True)
+    _, number = np.unique(row_numbers(edges.reshape(-1, 2)), return_inverse=True)
     total = np.zeros((number.max() + 1, 3))
     np.add.at(total, number, np.repeat(normals, 3, axis=0))
     mean = total[number].reshape(len(faces), 3, 3)

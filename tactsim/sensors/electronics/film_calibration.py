@@ -9,21 +9,29 @@ from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.sensors.electronics.calibration import LinearCalibration
 
+READ_AFTER = 1.0
+"""Time in s from the beginning of a constant force to its reading: thesis, section 2.2.1."""
+LINE_POINTS = 91
+"""Constant forces of a line, evenly spaced between two bounds."""
 
-def film_line(film: SensorFilm, forces: tuple[float, float], *, delay: float = 1.0, points: int = 91) -> LinearCalibration:
-    """Least-squares line C = m F + n through conductances read ``delay`` seconds after constant forces, in N, between two bounds.
+
+def film_line(film: SensorFilm, forces: tuple[float, float]) -> LinearCalibration:
+    """Least-squares line C = m F + n through conductances read ``READ_AFTER`` constant forces, in N, between two bounds began.
 
     Raises
     ------
     InvalidQuantity
         If the bounds are not 0 <= low < high.
-
-    Source: thesis, section 2.2.1: read one second after the force was applied.
     """
     if not 0 <= forces[0] < forces[1]:
         raise InvalidQuantity(f"forces of the calibration are {forces} N; allowed: 0 <= low < high")
-    applied = np.linspace(*forces, points)
-    return least_squares_line(applied, film.read([0.0, delay], np.tile(applied, (2, 1)))[-1])
+    applied = np.linspace(*forces, LINE_POINTS)
+    return least_squares_line(applied, read_under(film, applied))
+
+
+def read_under(film: SensorFilm, forces: Array, delay: float = READ_AFTER) -> Array:
+    """Signal (n,) of a film at rest, such as its conductance in S, a ``delay`` in s after constant forces (n,) in N began."""
+    return film.read([0.0, delay], np.tile(forces, (2, 1)))[-1]
 
 
 def least_squares_line(force: Array, conductance: Array) -> LinearCalibration:

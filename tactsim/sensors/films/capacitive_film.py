@@ -14,7 +14,7 @@ from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import SensorFilm
 from tactsim.interfaces.film_report import FilmReport
 from tactsim.results.quantity import Quantity
-from tactsim.sensors.films.force_history import checked_forces, checked_signal, checked_times
+from tactsim.sensors.films.force_history import beyond_measured, checked_forces, checked_signal, checked_times
 from tactsim.units import Area, Length, Positive, Pressure, format_quantity
 
 VACUUM_PERMITTIVITY = 8.8541878128e-12
@@ -142,10 +142,7 @@ class CapacitiveFilm(SensorFilm):
 
     def warnings(self, largest: float) -> tuple[str, ...]:
         """Whether the dielectric is compressed beyond the reciprocal of the measured stretch."""
-        if largest <= self.largest_force * (1 + 1e-9):
-            return ()
-        reached, measured = format_quantity(largest, "N"), format_quantity(self.largest_force, "N")
-        return (f"the force reaches {reached} on the film; its dielectric is known up to {measured}",)
+        return beyond_measured(largest, self.largest_force, "its dielectric is known up to {}")
 
     def _force(self, stretch: Array) -> Array:
         return self.shear_modulus * self.area * (stretch**-2 - stretch)

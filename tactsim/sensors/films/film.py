@@ -23,7 +23,7 @@ from tactsim.interfaces.film_report import FilmReport
 from tactsim.results.quantity import Quantity
 from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
 from tactsim.sensors.films.composite_library import AnyComposite, named_composite
-from tactsim.sensors.films.force_history import checked_forces, checked_signal, checked_times
+from tactsim.sensors.films.force_history import beyond_measured, checked_forces, checked_signal, checked_times
 from tactsim.sensors.films.thermogravimetry import Thermogravimetry
 from tactsim.sensors.films.tunnelling import relative_resistance, tunnelling_decay
 from tactsim.units import Area, Positive, format_quantity
@@ -166,12 +166,8 @@ class Film(SensorFilm):
 
     def warnings(self, largest: float) -> tuple[str, ...]:
         """Whether the force goes beyond that of the creep tests."""
-        if largest <= self.largest_force * (1 + 1e-9):
-            return ()
-        reached, measured = format_quantity(largest, "N"), format_quantity(self.largest_force, "N")
-        return (
-            f"the force reaches {reached} on the film; its creep was measured up to {measured}, beyond that lines are prolonged",
-        )
+        words = "its creep was measured up to {}, beyond that lines are prolonged"
+        return beyond_measured(largest, self.largest_force, words)
 
     def _strain(self, force: Array, delayed: Array) -> Array:
         felt = force * self._magnification

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
+from tactsim.units import format_quantity
 
 LARGEST = 1e30
 """Largest number in SI units that is taken, so that no difference or product overflows."""
@@ -77,3 +78,10 @@ def _check_finite(array: Array, name: str, unit: str) -> None:
     if wrong.any():
         place = tuple(int(i) for i in np.argwhere(wrong)[0])
         raise InvalidQuantity(f"{name} of sample {place[0]} is {array[place]} {unit}; allowed: finite numbers up to {LARGEST:g}")
+
+
+def beyond_measured(largest: float, measured: float, words: str) -> tuple[str, ...]:
+    """The warning that a force in N goes beyond the ``measured`` one, which stands in ``words`` as {}; none if it does not."""
+    if largest <= measured * (1 + 1e-9):
+        return ()
+    return (f"the force reaches {format_quantity(largest, 'N')} on the film; {words.format(format_quantity(measured, 'N'))}",)

@@ -8,17 +8,16 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.identification.film_joint import changed, identify_film_jointly
-from tactsim.identification.film_line import identify_film
+from tactsim.identification.film_line import ACCURATE_FORCES, identify_film
 from tactsim.interfaces import drawing, quantity
 from tactsim.sensors.electronics.calibration import THESIS_LINE
+from tactsim.sensors.electronics.film_calibration import LINE_POINTS, READ_AFTER, read_under
 from tactsim.sensors.films.film import Film
 from tactsim.units import Force, NonNegative, Positive, Time
 from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 from tactsim.validation.quantities.film import IDENTIFIED, LITERAL, FilmComposite
 
 JOINT_UNITS = {"barrier": "J", "initial_resistance": "ohm", "contact_resistance": "ohm"}
-LINE_POINTS = 91
-"""Forces at which a line is compared."""
 
 
 @quantity(unit="1")
@@ -46,9 +45,9 @@ def film_drift(
 def film_line_error(
     end: Literal["most", "least"],
     composite: FilmComposite = IDENTIFIED,
-    forces: tuple[Positive[Force], Positive[Force]] = (0.5, 5.0),
+    forces: tuple[Positive[Force], Positive[Force]] = ACCURATE_FORCES,
     full_scale: Positive[Force] = 5.0,
-    delay: Positive[Time] = 1.0,
+    delay: Positive[Time] = READ_AFTER,
 ) -> float:
     """Force that the line of 3.1.2 reads from a film, less the true one, in parts of the full scale; dimensionless.
 
@@ -60,7 +59,7 @@ def film_line_error(
     delay : time after the force was applied at which it is read
     """
     applied = np.linspace(*forces, LINE_POINTS)
-    conductance = Film(composite=composite).conductance([0.0, delay], np.tile(applied, (2, 1)))[-1]
+    conductance = read_under(Film(composite=composite), applied, delay)
     errors = (THESIS_LINE.force(conductance) - applied) / full_scale
     return float(errors.max() if end == "most" else errors.min())
 

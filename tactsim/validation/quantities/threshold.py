@@ -9,6 +9,7 @@ import scipy
 from pydantic import Field
 
 from tactsim.analytic.annular_area import annular_area as area_of_annulus
+from tactsim.array import Array
 from tactsim.errors import CaseError, InputError
 from tactsim.experiments.threshold.source import CurveSource
 from tactsim.interfaces import drawing, quantity
@@ -136,8 +137,7 @@ def equal_force_ratio(
     UnknownName, InputError
         If there is no such run, or the tissue of the run does not rise as far as the recess.
     """
-    history = inputs.run(study, run).history
-    rise, force = (np.array(history.get(name, ())) for name in ("tissue_rise", "reaction_force"))
+    rise, force = _rise_and_force(inputs, study, run)
     if rise.size < 2 or rise.max() < recess * (1 - 1e-4):
         raise InputError(f"{study}, {run} does not reach a rise of {recess:g} m")
     rising = rise[: rise.argmax() + 1]
@@ -172,8 +172,14 @@ def recess_over_hardness(
     UnknownName
         If there is no such run.
     """
-    history = inputs.run(study, run).history
-    rise, force = (np.array(history.get(name, ())) for name in ("tissue_rise", "reaction_force"))
+    rise, force = _rise_and_force(inputs, study, run)
     shown = rise >= shallowest
     curves = [series(f"{tissue}, modulus x {factor:g}", hole / rise[shown], factor * force[shown]) for factor in hardness]
     return curves_figure(title, "A/L", "", [panel("threshold force", "N", curves, logarithmic=True)])
+
+
+def _rise_and_force(inputs: Inputs, study: str, run: str) -> tuple[Array, Array]:
+    """Heights in m of the tissue in the hole and forces in N on the annulus at the steps of a run, empty without any."""
+    history = inputs.run(study, run).history
+    rise, force = (np.array(history.get(name, ())) for name in ("tissue_rise", "reaction_force"))
+    return rise, force

@@ -12,8 +12,7 @@ from pretence import CASE_TEXT
 from tactsim.case import case_json_schema, load_case
 from tactsim.case.model import experiment_kinds
 from tactsim.case.yaml_reading import read_yaml
-
-CASES = Path(__file__).parents[3] / "cases"
+from tactsim.shipped import CASES
 
 
 def shipped_cases() -> Iterator[Path]:

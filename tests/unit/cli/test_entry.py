@@ -10,8 +10,9 @@ import pytest
 
 from tactsim import __version__
 from tactsim.cli import command_schema, entry, main
+from tactsim.shipped import CASES
 
-STORED_GRASP = str(Path(__file__).parents[3] / "cases" / "stored" / "grasp_lump")
+STORED_GRASP = str(CASES / "stored" / "grasp_lump")
 
 
 def test_help_names_every_command_and_exit_code(capsys: pytest.CaptureFixture[str]) -> None:

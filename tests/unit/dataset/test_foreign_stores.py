@@ -20,12 +20,6 @@ from tactsim.dataset.store.writing import set_attributes
 from tactsim.errors import StorageError
 
 
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A small store that stays as it is."""
-    return small_store(tmp_path_factory.mktemp("kept"))
-
-
 def rewritten(place: Path, **attributes: object) -> None:
     """Changes what a store says of itself; None takes a word back."""
     description = json.loads((place / "zarr.json").read_text(encoding="utf-8"))

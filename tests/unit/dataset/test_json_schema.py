@@ -10,8 +10,8 @@ from sweeps import TEXT
 
 from tactsim.case.yaml_reading import read_yaml
 from tactsim.dataset.sampling.json_schema import sweep_json_schema
+from tactsim.shipped import CASES
 
-CASES = Path(__file__).parents[3] / "cases"
 NAMING = {f"sweep_{name}" for name in ("lumps", "arteries", "annulus", "rates", "closed_form")}
 
 

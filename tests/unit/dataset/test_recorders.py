@@ -24,8 +24,8 @@ from tactsim.interfaces import Experiment
 from tactsim.registry import kinds
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, StepRecord
+from tactsim.shipped import CASES
 
-CASES = Path(__file__).parents[3] / "cases"
 SWEEPS = sorted(CASES.glob("sweep_*.yaml"))
 ASKED = {f"sweep_{name}" for name in ("lumps", "arteries", "annulus", "rates", "closed_form")}
 

@@ -15,8 +15,7 @@ from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import Sweep, load_sweep, sweep_of_text
 from tactsim.dataset.store.blocks import decoded
 from tactsim.errors import CaseError
-
-CASES = Path(__file__).parents[3] / "cases"
+from tactsim.shipped import CASES
 
 GRID = """\
 schema: tactsim/sweep/1

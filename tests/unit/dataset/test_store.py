@@ -38,8 +38,8 @@ from tactsim.dataset.store.writing import chunk_samples, set_attributes
 from tactsim.dataset.use.card import redrawn, split_counts
 from tactsim.errors import CaseError, InputError, StorageError, TactsimError
 from tactsim.interfaces.variable import Variable
+from tactsim.shipped import CASES
 
-CASES = Path(__file__).parents[3] / "cases"
 TESTS = Path(__file__).parents[2]
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import signal
 import subprocess
 import sys
@@ -17,7 +16,7 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 from fork_server import forked_python
-from sweeps import small_store, sweep_file
+from sweeps import sweep_file
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
@@ -30,18 +29,6 @@ from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.storage.building import MARK
-
-
-@pytest.fixture(scope="module")
-def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A small store that stays as it is."""
-    return small_store(tmp_path_factory.mktemp("kept"))
-
-
-@pytest.fixture
-def store(kept: Path, tmp_path: Path) -> Path:
-    """The same to be spoilt."""
-    return Path(shutil.copytree(kept, tmp_path / "small.zarr"))
 
 
 def test_splits_are_apart_and_together_all(kept: Path) -> None:

@@ -2,43 +2,25 @@
 
 import numpy as np
 import pytest
+from made_grasps import LAYOUT, SIZE, bell_response
 
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
-from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.candidates import ball_candidates, tube_candidates
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
 from tactsim.localization.evidence import Change
-from tactsim.localization.lump_response import LumpResponse
 
-SIZE = np.array([40e-3, 40e-3, 20e-3])
-LAYOUT = TaxelLayout()
 RADII = np.array([2.5e-3, 3.5e-3, 4.5e-3, 5.5e-3])
 NOISE = 2e-3
 ESTIMATOR = HypothesesEstimator(model_error=0.02, radii=(2.5e-3, 4.5e-3), tube_radii=(2.5e-3, 4.5e-3))
 GAP = ESTIMATOR.gap
 
 
-def density(places):
-    """A bell over every taxel that fades with the distance from its jaw, (2, 3, 3, n) in N/m^3."""
-    x, y = (LAYOUT.borders(along).mean(axis=1) + 20e-3 for along in "xy")
-    away = (places[:, 0] - x[None, :, None]) ** 2 + (places[:, 1] - y[:, None, None]) ** 2
-    depth = np.stack([SIZE[2] - places[:, 2], places[:, 2]])[:, None, None]
-    return 1e5 * np.exp(-away[None] / 8e-3**2 - depth / 6e-3)
-
-
-def block_response(change=density):
-    lines = [(np.arange(n) + 0.5) * side / n for n, side in zip((40, 40, 20), SIZE, strict=True)]
-    places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
-    volumes = np.full(len(places), np.prod(SIZE) / len(places))
-    return LumpResponse.of_density(places, volumes, change(places), size=SIZE, radii=RADII, spacing=2e-3)
-
-
 @pytest.fixture(scope="module")
 def response():
-    return block_response()
+    return bell_response(RADII)
 
 
 def readings(response, change, *, seed=1, noise=NOISE, known=True):
@@ -62,7 +44,7 @@ def tube(response, *, angle=0, height=12e-3, contrast=3.0):
 
 
 def test_a_tube_is_the_integral_of_a_constant_density_over_it():
-    flat = block_response(lambda places: np.ones((1, 1, 1, len(places))))
+    flat = bell_response(RADII, lambda places: np.ones((1, 1, 1, len(places))))
     candidates = tube_candidates(flat, SIZE, [3e-3], gap=GAP, closed=True)
     middle = np.abs(candidates.centers[:, 2] - 10e-3).argmin()
     inner = np.linalg.norm(candidates.centers[:, :2] - 20e-3, axis=1) < 5e-3
@@ -73,7 +55,7 @@ def test_a_tube_is_the_integral_of_a_constant_density_over_it():
 
 
 def test_overlapping_bodies_are_reported():
-    response = block_response()
+    response = bell_response(RADII)
     candidates = ball_candidates(response, SIZE, [2.5e-3], gap=GAP)
     one = int(np.linalg.norm(candidates.centers - SIZE / 2, axis=1).argmin())
     away = np.linalg.norm(candidates.centers - candidates.centers[one], axis=1)

@@ -4,16 +4,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_grasps import LAYOUT, SIZE, bell_response, cells_of_block
 
 from tactsim.errors import CaseError, InputError, InvalidQuantity
 from tactsim.interfaces.readings import Readings
-from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
 
-SIZE = np.array([40e-3, 40e-3, 20e-3])
-LAYOUT = TaxelLayout()
+CELLS = (80, 80, 40)
 RADII = np.array([2e-3, 3e-3, 4e-3, 5e-3, 6e-3])
 NOISE = 1e-4
 BESIDE = 0.2e-3 * np.stack(np.meshgrid([1, -1], [1, -1], [1, -1]), axis=-1).reshape(-1, 3)
@@ -22,25 +21,9 @@ SURE = {"background_error": 0.0, "background_scale": 0.0, "factor_spread": 0.0}
 """A reference that is known exactly."""
 
 
-def quadrature(count=(80, 80, 40)):
-    """Midpoints and volumes of equal cells that fill the block."""
-    lines = [(np.arange(n) + 0.5) * side / n for n, side in zip(count, SIZE, strict=True)]
-    places = np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, 3)
-    return places, np.full(len(places), np.prod(SIZE) / len(places))
-
-
-def taxel_density(places):
-    """A bell over every taxel that fades with the distance from its jaw, (2, 3, 3, n) in N/m^3."""
-    x, y = (LAYOUT.borders(along).mean(axis=1) + 20e-3 for along in "xy")
-    away = (places[:, 0] - x[None, :, None]) ** 2 + (places[:, 1] - y[:, None, None]) ** 2
-    depth = np.stack([SIZE[2] - places[:, 2], places[:, 2]])[:, None, None]
-    return 1e5 * np.exp(-away[None] / 8e-3**2 - depth / 6e-3)
-
-
 @pytest.fixture(scope="module")
 def response():
-    places, volumes = quadrature()
-    return LumpResponse.of_density(places, volumes, taxel_density(places), size=SIZE, radii=RADII, spacing=1e-3)
+    return bell_response(RADII, count=CELLS, spacing=1e-3)
 
 
 def readings(response, center, radius, contrast, *, seed=1, noise=NOISE):
@@ -52,7 +35,7 @@ def readings(response, center, radius, contrast, *, seed=1, noise=NOISE):
 
 
 def test_a_linear_density_gives_its_middle_times_the_volume():
-    places, volumes = quadrature()
+    places, volumes = cells_of_block(CELLS)
     density = np.stack([np.ones(len(places)), 1 + 20 * places[:, 0]]).reshape(2, 1, 1, -1)
     response = LumpResponse.of_density(places, volumes, density, size=SIZE, radii=RADII, spacing=1e-3)
     center = np.array([[21.5e-3, 18.5e-3, 9.5e-3]])

@@ -4,26 +4,15 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from made_grasps import BALL, LAYOUT, PLAIN, SIZE
 
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion, inclusion_in_words
 from tactsim.interfaces.readings import Readings
-from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.registry import kinds
 
-SIZE = np.array([40e-3, 40e-3, 20e-3])
-LAYOUT = TaxelLayout()
-"""3 x 3 at a pitch of 10 mm: centres at 10, 20 and 30 mm of the block."""
-PLAIN = np.full((2, 3, 3), 0.25)
-BALL = np.array(
-    [
-        [[0.0034, 0.0318, 0.369], [0.0028, 0.021, 0.1399], [0.004, 0.0033, 0.0029]],
-        [[0.0039, 0.0714, 0.234], [0.0029, 0.0621, 0.1505], [0.0027, 0.0048, 0.0073]],
-    ]
-)
-"""Coarse finite elements: what a hard ball at (28, 14, 12) mm adds to plain ICF, in N."""
 REFERENCE = ThesisEstimator(background="reference")
 
 

@@ -4,20 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from made_grasps import BALL
 
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.readings import checked_readings
 from tactsim.localization.section_image import section_image
 from tactsim.localization.views import joined, pair_images, views, volume
-
-# Coarse finite elements: ICF block of 40 x 40 x 20 mm, hard ball of radius 5 mm at (28, 14, 12) mm, both jaws closed by 1 mm;
-# forces in N above those of plain tissue on the same mesh.
-BALL = np.array(
-    [
-        [[0.0034, 0.0318, 0.369], [0.0028, 0.021, 0.1399], [0.004, 0.0033, 0.0029]],
-        [[0.0039, 0.0714, 0.234], [0.0029, 0.0621, 0.1505], [0.0027, 0.0048, 0.0073]],
-    ]
-)
 
 
 def test_what_each_view_adds_up_by_hand():

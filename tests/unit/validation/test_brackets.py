@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 from wrong_rows import left, unmoved
 
@@ -11,6 +9,7 @@ from tactsim.errors import InputError, UnknownName
 from tactsim.identification.uniaxial import FORMS, fit_uniaxial
 from tactsim.materials.library import named_material
 from tactsim.materials.polynomial import Polynomial
+from tactsim.shipped import CASES
 from tactsim.validation import load_tables
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.brackets import Panel as BarPanel
@@ -19,7 +18,7 @@ from tactsim.validation.quantities.materials import compression_curve, differenc
 from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Table
 
-SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+SHIPPED = CASES / "thesis"
 PRESSURES = {"wide": {"default": 40e3, "thin": 20e3}, "corners": {"thin, narrow": 30e3, "thick, narrow": None}}
 BOTH = ("wide", "corners")
 

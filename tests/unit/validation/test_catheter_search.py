@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from tactsim.errors import InputError
+from tactsim.shipped import CASES
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.catheter import catheter_search, catheter_search_over_sensors
 
-CASES = Path(__file__).parents[3] / "cases"
 FEW = {"places": 3, "touches": 5}
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from wrong_rows import left, unmoved
 
 from tactsim.errors import InputError
+from tactsim.shipped import CASES
 from tactsim.validation import load_tables
 from tactsim.validation.execution import simulated
 from tactsim.validation.inputs import Inputs
@@ -16,7 +15,7 @@ from tactsim.validation.quantities.probe import Press, probe_force_ratio, switch
 from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Row
 
-SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+SHIPPED = CASES / "thesis"
 TABLE = load_tables(SHIPPED, ["chapter_5"]).tables["chapter_5"]
 SOLVED = ("finite_elements", "tissues_fem")
 """Studies that take minutes."""

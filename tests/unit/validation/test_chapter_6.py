@@ -13,6 +13,7 @@ from thesis_tables import MANIFEST, TABLE, write_tables
 from wrong_rows import left, unmoved
 
 from tactsim.errors import CaseError, InputError, InvalidQuantity, UnknownName
+from tactsim.shipped import CASES
 from tactsim.validation import compare, load_tables
 from tactsim.validation.endings import Confirmed
 from tactsim.validation.execution import StudyRunner, simulated
@@ -22,7 +23,7 @@ from tactsim.validation.report import CLASSES, Validation, count_rows, table_tex
 from tactsim.validation.study import RunOutcome, Study
 from tactsim.validation.table import Row
 
-SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+SHIPPED = CASES / "thesis"
 LOADED = load_tables(SHIPPED, ["section_6_6"])
 TABLE_6_6 = LOADED.tables["section_6_6"]
 CLAIM = "ends: {kind: confirmed, above: 100 N/m, why: a force that is felt}"

@@ -10,10 +10,10 @@ import pytest
 from tactsim.case import load_case
 from tactsim.errors import InputError
 from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.shipped import CASES
 from tactsim.validation.execution import StudyRunner, Task, simulated
 from tactsim.validation.study import RunOutcome, Study
 
-CASES = Path(__file__).parents[3] / "cases"
 STUDY = Study.model_validate(
     {
         "name": "icf",

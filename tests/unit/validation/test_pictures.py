@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -11,6 +9,7 @@ from tactsim.errors import InputError, UnknownName
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.results import Result
 from tactsim.results.fields import AXIAL_STRESS
+from tactsim.shipped import CASES
 from tactsim.validation import load_tables
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
@@ -19,7 +18,7 @@ from tactsim.validation.quantities.runs import run_history
 from tactsim.validation.quantities.sections import section_panel
 from tactsim.validation.study import RunOutcome
 
-SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+SHIPPED = CASES / "thesis"
 PICTURES = {
     "section_2_3": ("Fig. 2.9a", "Fig. 2.9b", "Fig. 2.10"),
     "section_3_1_2": ("Fig. 3.5a", "Fig. 3.5b"),

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 from tactsim.errors import InputError
+from tactsim.shipped import CASES
 from tactsim.validation.execution import simulated
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.probe import (
@@ -22,7 +21,6 @@ from tactsim.validation.quantities.probe import (
 )
 from tactsim.validation.study import RunOutcome
 
-CASES = Path(__file__).parents[3] / "cases"
 RATES = (1e-3, 0.5e-3, 3e-3)
 FEM, FAST = ProbeRun(study="fem", run="r"), ProbeRun(study="fast", run="r")
 BOTH = {"tissues": 3, "rates": RATES}

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import json
-from pathlib import Path
 
 import pytest
+from thesis_tables import assert_cases_valid
 from wrong_rows import left, unmoved
 
-from tactsim.case import load_case
 from tactsim.errors import InputError
+from tactsim.shipped import CASES
 from tactsim.validation import load_tables
 from tactsim.validation.execution import simulated
 from tactsim.validation.figures import validation_figure
@@ -23,7 +23,7 @@ from tactsim.validation.quantities.published import (
 from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Table
 
-PUBLISHED = Path(__file__).parents[3] / "cases" / "published"
+PUBLISHED = CASES / "published"
 SHORT = {"code_aster": ("tube",), "closed_forms": ("inflated_tube", "creep")}
 """Studies of a few seconds."""
 PRINTED = (PrintedNumber(at="1 s", quantity="number", value="2 m"),)
@@ -40,12 +40,7 @@ def inputs_of(table: Table, names: tuple[str, ...]) -> Inputs:
 
 
 def test_every_table_is_counted_and_its_cases_are_valid() -> None:
-    loaded = load_tables(PUBLISHED)
-    assert loaded.faults == ()
-    for table in loaded.tables.values():
-        for study in table.studies:
-            cases = [load_case(PUBLISHED / study.case, study.overrides(run)) for run in study.runs]
-            assert len({case.case_id for case in cases}) == len(study.runs)
+    assert_cases_valid(PUBLISHED)
 
 
 @pytest.mark.parametrize("name", SHORT)

@@ -5,12 +5,13 @@ from __future__ import annotations
 import json
 from copy import deepcopy
 from functools import cache
-from pathlib import Path
 
 import pytest
+from thesis_tables import assert_cases_valid
 from wrong_rows import left, unmoved
 
-from tactsim.case import load_case, loading
+from tactsim.case import loading
+from tactsim.shipped import CASES
 from tactsim.validation import load_tables
 from tactsim.validation.endings import Confirmed, Contradicted
 from tactsim.validation.execution import simulated
@@ -19,7 +20,7 @@ from tactsim.validation.inputs import Inputs
 from tactsim.validation.loading import MANIFEST, read_model
 from tactsim.validation.table import Manifest, Table
 
-SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+SHIPPED = CASES / "thesis"
 WITHOUT_SIMULATION = (
     "section_2_2", "table_3_1", "table_3_3", "figure_3_8", "equation_4_2_21", "section_4_4", "table_4_1",
     "equation_4_6_4", "equation_4_7_1", "equation_4_7_2", "section_4_7", "section_6_3", "appendix_a",
@@ -61,12 +62,7 @@ def test_bands_and_sections_are_drawn() -> None:
 def test_every_shipped_table_is_counted_and_its_cases_are_valid(monkeypatch: pytest.MonkeyPatch) -> None:
     read = cache(loading._read_file)  # most runs change the case of another
     monkeypatch.setattr(loading, "_read_file", lambda path: deepcopy(read(path)))
-    loaded = load_tables(SHIPPED)
-    assert loaded.faults == ()
-    for table in loaded.tables.values():
-        for study in table.studies:
-            cases = [load_case(SHIPPED / study.case, study.overrides(run)) for run in study.runs]
-            assert len({case.case_id for case in cases}) == len(study.runs)
+    assert_cases_valid(SHIPPED)
 
 
 def test_a_step_towards_a_jaw_is_confirmed_where_the_force_rises_there_and_falls_at_the_other() -> None:

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import pytest
 
 from tactsim.errors import InputError, InvalidQuantity, UnknownName
+from tactsim.shipped import CASES
 from tactsim.validation import compare, load_tables
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.elastomers import elastomer_value, hertz_durometer_modulus, ranking_agreement
 from tactsim.validation.study import RunOutcome
 
-SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+SHIPPED = CASES / "thesis"
 HISTORY = {"shape": (1.0, 1.0, 2.0, 2.0), "elastomer": (1.0, 2.0, 1.0, 2.0), "predicted_reading": (28.7, 17.5, 22.9, 12.7)}
 
 

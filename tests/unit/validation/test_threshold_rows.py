@@ -7,13 +7,14 @@ from pathlib import Path
 import pytest
 
 from tactsim.errors import InputError
+from tactsim.shipped import CASES
 from tactsim.validation import load_tables
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.film import full_scale_error
 from tactsim.validation.quantities.threshold import equal_force_ratio, threshold_at_level
 from tactsim.validation.study import RunOutcome
 
-SHIPPED = Path(__file__).parents[3] / "cases" / "thesis"
+SHIPPED = CASES / "thesis"
 HEADER = "displacement [mm], plate force [N], tissue rise [mm], small sensor force [N]\n"
 ROWS = "0, 0, 0, 0\n1, 1, 0.4, 0\n2, 2, 0.8, 0\n3, 3, 0.8, 0.5\n4, 4, 0.8, 1\n"
 

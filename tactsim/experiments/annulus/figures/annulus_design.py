@@ -10,12 +10,12 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import FuncFormatter
 from scipy.interpolate import RectBivariateSpline
 
 from tactsim.array import Array
 from tactsim.experiments.annulus.scene import AnnulusDesignScene
-from tactsim.plotting.canvas import SingleFigure, result_figure
+from tactsim.plotting.canvas import SingleFigure, plain_decades, result_figure
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -87,9 +87,7 @@ def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
     elif np.nanmin(relative) >= end:
         axis.text(0.03, ABOVE_POINT, "all outside small-displacement theory", transform=axis.transAxes, color="w", fontsize=8)
     axis.set_yscale("log")
-    axis.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.yaxis.set_minor_formatter(NullFormatter())
+    plain_decades(axis)
     return drawn
 
 

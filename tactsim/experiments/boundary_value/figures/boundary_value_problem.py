@@ -18,6 +18,7 @@ from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.interfaces import Drawing
+from tactsim.mesh.quadratic import row_numbers
 from tactsim.plotting.canvas import (
     PRESSURE_COLOURS,
     REGION_COLOURS,
@@ -213,23 +214,25 @@ def _section(frame: FieldFrame) -> tuple[Array, Array]:
 
 def _surface(frame: FieldFrame, places: Array) -> tuple[Array, Array]:
     """Triangles (T, 3) of the surface that face the eye, the farthest first, and their elements (T,)."""
-    elements = frame.cells["tetra10"]
-    faces = elements[:, FACES].reshape(-1, 6)
-    _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
-    outside = first[count == 1]
-    triangles = faces[outside][:, QUARTERS].reshape(-1, 3)
-    owners = np.repeat(outside // len(FACES), len(QUARTERS))
+    faces, owners = _outer_faces(frame)
+    triangles = faces[:, QUARTERS].reshape(-1, 3)
     seen = _facing(places[triangles])
-    return triangles[seen], owners[seen]
+    return triangles[seen], np.repeat(owners, len(QUARTERS))[seen]
 
 
 def _outside(frame: FieldFrame, places: Array) -> tuple[Array, Array]:
     """Faces (k, 6) of the surface that face the eye, the farthest first, and their elements (k,)."""
+    faces, owners = _outer_faces(frame)
+    seen = _facing(places[faces[:, :3]])
+    return faces[seen], owners[seen]
+
+
+def _outer_faces(frame: FieldFrame) -> tuple[Array, Array]:
+    """Faces (F, 6) of one element only, and their elements (F,)."""
     faces = frame.cells["tetra10"][:, FACES].reshape(-1, 6)
-    _, first, count = np.unique(np.sort(faces[:, :3], axis=1), axis=0, return_index=True, return_counts=True)
+    _, first, count = np.unique(row_numbers(np.sort(faces[:, :3], axis=1)), return_index=True, return_counts=True)
     outside = first[count == 1]
-    seen = outside[_facing(places[faces[outside, :3]])]
-    return faces[seen], seen // len(FACES)
+    return faces[outside], outside // len(FACES)
 
 
 def _facing(corners: Array) -> Array:

@@ -12,13 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
-from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
+from matplotlib.ticker import NullFormatter
 
 from tactsim.array import Array
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, result_figure
+from tactsim.plotting.canvas import Plot, despined, plain_decades, result_figure
 from tactsim.results import Result
 
 DATA, LINE = "#1f4e79", "#b8540a"
@@ -120,9 +120,7 @@ def _draw_creep(axis: Axes, result: Result) -> None:
         axis.semilogy(times, resistance[:, k] / 1e3, ".-", color=colour, markersize=4, label=f"{forces[k]:.3g} N")
     axis.set(xlabel="time since the force began in s", ylabel="resistance in kΩ")
     axis.set_title("creep of the resistance; dots: the times of the case", loc="left")
-    axis.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.yaxis.set_minor_formatter(NullFormatter())
-    axis.yaxis.set_major_locator(LogLocator(subs=(1.0, 2.0, 5.0)))
+    plain_decades(axis)
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)  # beside: the curves may be anywhere
 
 

@@ -42,8 +42,7 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
         _draw_surroundings(axis, grasp.scene, side, bodies)
         total = float(grasp.forces[side].sum())
         axis.set_title(f"{side} jaw ({LETTERS[side]}): {total:.3g} N on the taxels", loc="left")
-        axis.set(aspect="equal", xlabel="x in mm", ylabel="y in mm (front at the bottom)")
-        axis.spines[:].set_visible(False)
+        _seen_from_above(axis)
         axis.tick_params(length=2.5)
     axes[1].set_ylabel("")
     bar = axes[0].figure.colorbar(
@@ -73,6 +72,10 @@ def draw_plan(axis: Axes, result: Result) -> None:
     outlines = 1e3 * frame.points[upper[:, [0, 1, 2, 0]], :2]
     style: dict[str, Any] = {"colors": "k", "linewidths": 0.3, "alpha": 0.6, "rasterized": True, "zorder": 2.5}
     axis.add_collection(LineCollection(list(outlines), **style))
+    _seen_from_above(axis)
+
+
+def _seen_from_above(axis: Axes) -> None:
     axis.set(aspect="equal", xlabel="x in mm", ylabel="y in mm (front at the bottom)")
     axis.spines[:].set_visible(False)
 

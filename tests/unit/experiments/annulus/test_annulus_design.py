@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from scenes import cut_words, unmarked_figures
@@ -16,8 +14,9 @@ from tactsim.experiments.annulus.annulus_design import AnnulusDesign, AtrialTiss
 from tactsim.plotting import figures_for
 from tactsim.results import Status
 from tactsim.results.document import document_text, parse_document, result_of
+from tactsim.shipped import CASES
 
-SHIPPED = Path(__file__).parents[4] / "cases" / "design_annulus.yaml"
+SHIPPED = CASES / "design_annulus.yaml"
 THESIS = AtrialTissue(times="viscosities", compliance="half_shear")
 GIVEN = {"ratios": (0.1, 0.5), "recesses": (0.1e-3, 0.7e-3, 5e-3), "forces": (1.0, 3.0), "times": (0.5, 5.0)}
 

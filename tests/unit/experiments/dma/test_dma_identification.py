@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.case import load_case
@@ -61,7 +61,7 @@ def test_figure(result):
     drawings = figures_for(result)
     assert list(drawings) == ["dma_identification.png"]
     assert drawings["dma_identification.png"]().startswith(b"\x89PNG")
-    text_ = " ".join(text.get_text() for text in dma_identification_figure(result).findobj(Text))
+    text_ = text_of(dma_identification_figure(result))
     for words in ("elastic compliance", "95 % band, simultaneous", "genetic algorithm", "combinations of the 17 constants"):
         assert words in text_
 
@@ -98,7 +98,7 @@ def test_the_fits_made_before_a_stop_are_kept(monkeypatch, error, status):
     assert outcome.status is status
     assert "moduli" in outcome.quantities
     assert "genetic_moduli" not in outcome.quantities
-    assert str(status).upper() in " ".join(t.get_text() for t in dma_identification_figure(outcome).findobj(Text))
+    assert str(status).upper() in text_of(dma_identification_figure(outcome))
     nothing = DmaIdentification(methods=("genetic",), **QUICK).run()
     assert nothing.status is status
     assert nothing.steps == ()
@@ -159,7 +159,7 @@ def test_a_case_of_signals(request):
     assert not any("correlated residuals" in words for words in outcome.warnings)
     drawings = figures_for(outcome)
     assert list(drawings) == ["dma_identification.png", "dma_signals.png"]
-    words = " ".join(text.get_text() for text in signals_figure(outcome).findobj(Text))
+    words = text_of(signals_figure(outcome))
     for label in ("1 Hz: the displacement lags by 73", "36 Hz", "loss tangent"):
         assert label in words
 

@@ -6,8 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drawn import covered_lines
-from matplotlib.text import Text
+from drawn import covered_lines, text_of
 from scenes import SOLVER, unmarked_figures
 
 from tactsim.analytic.durometer import DurometerScale
@@ -31,12 +30,8 @@ def made_up(**quantities):
     return Result("durometer", Status.CONVERGED, "because", reported, steps=steps, title="A title", scene=scene)
 
 
-def texts(figure):
-    return " ".join(text.get_text() for text in figure.findobj(Text))
-
-
 def test_the_reading_is_reported_with_its_interval():
-    written = texts(DurometerFigures().figure(made_up(**READ)))
+    written = text_of(DurometerFigures().figure(made_up(**READ)))
     for words in ("A title", "63.0", "(62.9 to 63.2)", "spring", "Hertz", "reading", "depth of the indentor in mm"):
         assert words in written
     assert "bottoms out" not in written
@@ -58,13 +53,13 @@ def test_no_curve_runs_through_the_legend(depth, reach):
 
 
 def test_off_the_scale_is_reported():
-    assert "reading: below 0, the indentor bottoms out" in texts(DurometerFigures().figure(made_up(reading=0.0)))
-    assert "reading: none" in texts(DurometerFigures().figure(made_up()))
+    assert "reading: below 0, the indentor bottoms out" in text_of(DurometerFigures().figure(made_up(reading=0.0)))
+    assert "reading: none" in text_of(DurometerFigures().figure(made_up()))
 
 
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
 def test_a_run_that_did_not_end_well_is_marked(status):
-    written = texts(DurometerFigures().figure(replace(made_up(), status=status)))
+    written = text_of(DurometerFigures().figure(replace(made_up(), status=status)))
     assert f"{status.upper()} after a displacement of 2.5 mm: because" in written
 
 

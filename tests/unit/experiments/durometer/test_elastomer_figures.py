@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from matplotlib.text import Text
+from drawn import text_of
 from scenes import unmarked_figures
 
 from tactsim.experiments.durometer.elastomers import STABLE_SHAPES, TABLE_3_3
@@ -27,12 +27,8 @@ def made_up():
     return Result("elastomer_ranking", Status.CONVERGED, "done", steps=tuple(steps), scene=scene)
 
 
-def texts(figure):
-    return " ".join(text.get_text() for text in figure.findobj(Text))
-
-
 def test_elastomers_shapes_and_ties_are_named():
-    written = texts(ElastomerRankingFigures().figure(made_up()))
+    written = text_of(ElastomerRankingFigures().figure(made_up()))
     for words in (*(one.name for one in TABLE_3_3), "B1-A stable", "durometer", "hand", "sensor", "3 tied", "5 tied"):
         assert words in written
     assert "FAILED" not in written
@@ -52,7 +48,7 @@ def test_what_is_missing_leaves_a_gap():
         replace(step, values={k: v for k, v in step.values.items() if k != "predicted_reading"}) for step in made_up().steps[:7]
     ]
     result = replace(made_up(), steps=(*cut, *made_up().steps[7:10]), status=Status.INTERRUPTED, reason="stopped")
-    assert "INTERRUPTED: stopped" in texts(ElastomerRankingFigures().figure(result))
+    assert "INTERRUPTED: stopped" in text_of(ElastomerRankingFigures().figure(result))
 
 
 def test_png_by_name_and_nothing_without_a_shape():

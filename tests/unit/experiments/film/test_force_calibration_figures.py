@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 
 from tactsim.experiments.film.calibration import ForceCalibration
 from tactsim.experiments.film.figures.calibration import ForceCalibrationFigures
@@ -26,10 +26,6 @@ def calibrated(sensors=1, **chain):
     return ForceCalibration(data=data, chain=SignalChain(**settings)).run()
 
 
-def words(figure):
-    return " ".join(text.get_text() for text in figure.findobj(Text))
-
-
 @pytest.fixture(scope="module")
 def result():
     return calibrated()
@@ -44,7 +40,7 @@ def test_it_is_found_by_the_kind_and_drawn(result):
 
 def test_it_says_line_band_and_limits(result):
     figure = ForceCalibrationFigures().figure(result)
-    written = words(figure)
+    written = text_of(figure)
     offset = result.quantities["intercept"].value / result.quantities["slope"].value
     assert f"F = {1e-3 / result.quantities['slope'].value:.2f} C − {offset:.3f} (N, mS)" in written
     assert f"{100 * result.quantities['linearity_negative'].value:+.3g} %" in written
@@ -56,11 +52,11 @@ def test_it_says_line_band_and_limits(result):
 
 
 def test_saturated_readings_are_shown_as_left_out():
-    assert "saturated, left out" in words(ForceCalibrationFigures().figure(calibrated(converter=Converter(high=2.0))))
+    assert "saturated, left out" in text_of(ForceCalibrationFigures().figure(calibrated(converter=Converter(high=2.0))))
 
 
 def test_many_sensors_have_a_line_each():
     figure = ForceCalibrationFigures().figure(calibrated(sensors=18))
-    assert "lines of 18 sensors" in words(figure)
+    assert "lines of 18 sensors" in text_of(figure)
     assert len(figure.axes[0].lines) == 36
     assert len(figure.axes[0].get_legend().get_texts()) == 3

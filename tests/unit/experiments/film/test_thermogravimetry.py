@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 from mutants import assert_kills
 
 from tactsim.case import load_case
@@ -17,9 +15,9 @@ from tactsim.plotting import figures_for
 from tactsim.sensors.films.composite_library import named_composite
 from tactsim.sensors.films.film import Film
 from tactsim.sensors.films.thermogravimetry import Thermogravimetry
+from tactsim.shipped import CASES
 from tactsim.validation.quantities.film import filler_fraction_deviation
 
-CASES = Path(__file__).parents[4] / "cases"
 MILLIGRAM = 1e-6
 LINGSTAT = {"sample_mass": 21.158 * MILLIGRAM, "filler_mass": 4.2083 * MILLIGRAM}
 
@@ -87,7 +85,7 @@ def test_the_case_with_both_densities():
     for number, (low, high) in enumerate(zip(*_exponents(result), strict=True)):
         assert result.quantities["exponent_deviation"].value[number] == pytest.approx(abs(high - low) / 2, rel=2e-3)
     assert any("E27" in warning for warning in result.warnings)
-    words = " ".join(text.get_text() for text in ThermogravimetryFigures().figure(result).findobj(Text))
+    words = text_of(ThermogravimetryFigures().figure(result))
     assert "bulk: 0.2875" in words
     assert list(figures_for(result)) == ["thermogravimetry.png"]
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 from scenes import Unrendered, grasp_scene, unmarked_figures
 
 from tactsim.cli.figures.result_figures import rendered_figures
@@ -83,10 +83,6 @@ def made_up(*, frame=None, status=Status.CONVERGED, steps=STEPS, tilt=0.0, layou
 @pytest.fixture(scope="module")
 def frame():
     return made_up_frame()
-
-
-def text_of(figure):
-    return " ".join(text.get_text() for text in figure.findobj(Text))
 
 
 def test_cut_has_the_areas_and_outlines_of_block_and_lump(frame):

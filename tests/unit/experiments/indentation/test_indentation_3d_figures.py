@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 from scenes import SOLVER, unmarked_figures
 
 from tactsim.contact.annulus import Annulus
@@ -54,7 +54,7 @@ def test_cut_is_the_section_once_on_each_side_that_is_computed(symmetry, section
 
 @pytest.mark.parametrize("symmetry", list(TURNS))
 def test_figure_shows_what_is_seen(symmetry):
-    written = " ".join(text.get_text() for text in Indentation3DFigures().figure(made_up(symmetry)).findobj(Text))
+    written = text_of(Indentation3DFigures().figure(made_up(symmetry)))
     for words in ("A title", "cut y = 0", "pressure in", "inner sensor", "displacement in"):
         assert words in written
     assert ("sectors of the annulus" in written) == (symmetry != "quarter")
@@ -62,7 +62,7 @@ def test_figure_shows_what_is_seen(symmetry):
 
 def test_failed_run_is_marked_and_fields_may_be_missing():
     failed = made_up(status=Status.FAILED)
-    written = " ".join(text.get_text() for text in Indentation3DFigures().figure(replace(failed, frames=())).findobj(Text))
+    written = text_of(Indentation3DFigures().figure(replace(failed, frames=())))
     assert "FAILED" in written
     assert "because" in written
     assert "cut" not in written

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 from scenes import SOLVER, unmarked_figures
 
 from tactsim.contact.annulus import Annulus
@@ -34,12 +34,8 @@ def made_up(status=Status.CONVERGED):
     return Result("indentation", status, "because", quantities, steps=steps, frames=(frame,), title="A title", scene=scene)
 
 
-def texts(figure):
-    return " ".join(text.get_text() for text in figure.findobj(Text))
-
-
 def test_threshold_and_title_are_reported():
-    written = texts(IndentationFigures().figure(made_up()))
+    written = text_of(IndentationFigures().figure(made_up()))
     for words in ("A title", "threshold", "75.45 kPa", "1.6 N", "pressure in kPa", "displacement in"):
         assert words in written
     assert "FAILED" not in written
@@ -49,11 +45,11 @@ def test_a_colour_bar_says_what_lies_beyond_its_colours():
     plain = made_up()
     (frame,) = plain.frames
     singular = {**frame.point_data, "pressure [Pa]": np.array([7.2e4, 1e3, 1e3, 2e3, 3e3, -5e2])}
-    written = texts(IndentationFigures().figure(replace(plain, frames=(replace(frame, point_data=singular),))))
+    written = text_of(IndentationFigures().figure(replace(plain, frames=(replace(frame, point_data=singular),))))
     assert "arrows: what lies beyond them, up to 72 kPa" in written
     even = np.full(6, 1e3)
     level = replace(plain, frames=(replace(frame, point_data={**frame.point_data, "pressure [Pa]": even}),))
-    assert "arrows" not in texts(IndentationFigures().figure(level))
+    assert "arrows" not in text_of(IndentationFigures().figure(level))
 
 
 def test_the_contact_pressure_is_drawn_to_a_percentile_and_what_lies_beyond_is_said():
@@ -76,7 +72,7 @@ def test_the_contact_pressure_is_drawn_to_a_percentile_and_what_lies_beyond_is_s
 
 @pytest.mark.parametrize("status", [Status.FAILED, Status.INTERRUPTED])
 def test_a_run_that_did_not_end_well_is_marked(status):
-    written = texts(IndentationFigures().figure(replace(made_up(status), quantities={})))
+    written = text_of(IndentationFigures().figure(replace(made_up(status), quantities={})))
     assert f"{status.upper()} after a displacement" in written
     assert "because" in written
 

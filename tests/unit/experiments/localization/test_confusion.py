@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from made_grasps import PLAIN
 from scenes import grasp_scene, unmarked_figures
 
 from tactsim.errors import InputError
@@ -14,7 +15,6 @@ from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.writing import write_result
 
 SPHERE = Sphere(center=(20e-3, 20e-3, 12e-3), radius=5e-3)
-PLAIN = np.full((2, 3, 3), 0.25)
 LUMP = PLAIN + np.outer([1.0, 0.5], np.eye(9)[4]).reshape(2, 3, 3)
 
 

@@ -6,6 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from made_grasps import BALL, BALL_AT, PLAIN, SIZE
 from matplotlib.axes import Axes
 from matplotlib.collections import QuadMesh
 from scenes import Unrendered, grasp_scene, unmarked_figures
@@ -25,16 +26,7 @@ from tactsim.plotting import figures_for
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.writing import write_result
 
-SIZE = np.array([40e-3, 40e-3, 20e-3])
-SPHERE = Sphere(center=(28e-3, 14e-3, 12e-3), radius=5e-3)
-PLAIN = np.full((2, 3, 3), 0.25)
-BALL = np.array(
-    [
-        [[0.0034, 0.0318, 0.369], [0.0028, 0.021, 0.1399], [0.004, 0.0033, 0.0029]],
-        [[0.0039, 0.0714, 0.234], [0.0029, 0.0621, 0.1505], [0.0027, 0.0048, 0.0073]],
-    ]
-)
-"""Coarse finite elements: what a hard ball there adds to plain ICF, in N."""
+SPHERE = Sphere(center=BALL_AT, radius=5e-3)
 ESTIMATOR = ThesisEstimator(background="reference")
 
 

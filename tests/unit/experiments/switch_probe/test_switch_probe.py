@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 
 from tactsim.case import load_case
 from tactsim.contact.trapezoid import Trapezoid
@@ -26,8 +24,8 @@ from tactsim.results.document import document_text
 from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.sensors.switch_array import SwitchArray
+from tactsim.shipped import CASES
 
-CASES = Path(__file__).parents[4] / "cases"
 COARSE = {"mesh": MeshSettings(finest=0.4e-3, growth=0.8), "time": TimeSettings(tolerance=0.05, per_decade=0)}
 pytestmark = pytest.mark.usefixtures("one_thread")
 
@@ -128,12 +126,12 @@ def test_figures(three):
     drawings = figures_for(three)
     assert list(drawings) == ["force_over_depth.png", "switch_panel.png", "tissues_by_rate.png"]
     assert all(draw().startswith(b"\x89PNG") for draw in drawings.values())
-    written = " ".join(text.get_text() for text in switch_panel_figure(three).findobj(Text))
+    written = text_of(switch_panel_figure(three))
     for words in ("mean rate 1.02", "force sensor", "tissue 1 at 1 mm/s"):
         assert words in written
     single = probe(sides="computed").run()
     assert list(figures_for(single)) == ["force_over_depth.png", "switch_panel.png"]
-    written = " ".join(text.get_text() for text in switch_panel_figure(single).findobj(Text))
+    written = text_of(switch_panel_figure(single))
     assert "not every switch closed" in written
 
 

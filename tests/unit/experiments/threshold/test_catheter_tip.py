@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 
 from tactsim.case import load_case
 from tactsim.errors import CaseError
@@ -128,7 +128,7 @@ def test_a_tip_that_is_not_pressed_enough_has_no_answer():
     result = run(press=0.05e-3)
     assert result.quantities["chance_of_no_answer"].value == 1
     assert "hardest_sensor" not in result.quantities
-    assert "no sensor found" in " ".join(text.get_text() for text in CatheterTipFigures().figure(result).findobj(Text))
+    assert "no sensor found" in text_of(CatheterTipFigures().figure(result))
 
 
 def test_the_same_seed_gives_the_same_result(usual):
@@ -140,7 +140,7 @@ def test_figure(usual):
     drawings = figures_for(usual)
     assert list(drawings) == ["catheter_tip.png"]
     assert drawings["catheter_tip.png"]().startswith(b"\x89PNG")
-    words = " ".join(text.get_text() for text in CatheterTipFigures().figure(usual).findobj(Text))
+    words = text_of(CatheterTipFigures().figure(usual))
     for label in ("hardest at sensor 1", "leaflet", "annulus", "atrium", "threshold pressure in kPa"):
         assert label in words
     best, second = sorted((one for one in usual["reported_pressure"].value if one is not None), reverse=True)[:2]

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from matplotlib.text import Text
+from drawn import text_of
 from nested_runs import every_end, pretend_to_end
 from scenes import SOLVER
 
@@ -88,10 +88,10 @@ def test_figures(result):
     drawings = figures_for(result)
     assert list(drawings) == ["threshold_errors.png", "threshold_signals.png"]
     assert all(draw().startswith(b"\x89PNG") for draw in drawings.values())
-    words = " ".join(text.get_text() for text in threshold_error_figure(result).findobj(Text))
+    words = text_of(threshold_error_figure(result))
     for label in ("lag of the filter", "cut-off of the low pass in Hz", "mean ± standard deviation", "speed in mm/s"):
         assert label in words
-    assert "captured threshold" in " ".join(text.get_text() for text in threshold_signal_figure(result).findobj(Text))
+    assert "captured threshold" in text_of(threshold_signal_figure(result))
 
 
 def test_the_same_seed_gives_the_same_result(usual):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import numpy as np
 import pytest
 from mutants import assert_kills
@@ -26,8 +24,8 @@ from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
 from tactsim.interfaces.run import returned_by
 from tactsim.relaxation import Relaxation
 from tactsim.sensors.threshold.sensor_ring import SensorRing
+from tactsim.shipped import CASES
 
-CASES = Path(__file__).parents[4] / "cases"
 EXAMPLE, RING = CatheterTip.example(), SensorRing()
 PLACE, SPEED = (11.5e-3, 0.0), 1e-3
 RELAXING = Relaxation(fractions=(0.3, 0.2), times=(0.05, 2.0))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from lumps import irregular, same_mirrored, write_cells
+from lumps import assert_sound, irregular, same_mirrored, write_cells
 from scipy.spatial import KDTree
 
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
@@ -39,9 +39,7 @@ SOME = pytest.mark.parametrize("count", [4, pytest.param(40, marks=pytest.mark.s
 def test_lumps_anywhere_are_meshed_soundly(count):
     for lump in random_lumps(count):
         block = graded_block(SIZE, [lump], COARSE)
-        assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
-        assert block.quality.minimum > 0.02
-        assert block.quality.curvature > 0
+        assert_sound(block)
         assert 8_000 < block.unknowns < 52_000
 
 
@@ -156,9 +154,7 @@ SWEPT = BlockMeshSettings(size=8e-3, inclusion_size=4e-3, edge_size=2.2e-3, grow
 def test_two_lumps_as_sweeps_draw_them_are_meshed_soundly(count):
     for pair in random_pairs(count):
         block = graded_block(SIZE, pair, SWEPT)
-        assert np.abs(block.volume_errors).max() <= VOLUME_TOLERANCE
-        assert block.quality.minimum > 0.02
-        assert block.quality.curvature > 0
+        assert_sound(block)
 
 
 def test_bodies_too_close_for_all_layers_have_fewer_and_the_mesh_says_so():
