@@ -96,13 +96,15 @@ class PointCondition(Condition, Displacement):
 
 
 class RotationCondition(FaceCondition):
-    """A face that turns about the z axis as if glued to a rigid plate, in 3D; it stays at its height, or moves freely along z."""
+    """A face that turns about an axis along z, in 3D, its shape in the plane kept; along z it is held, or free to warp."""
 
     kind: Literal["rotation"]
     angle: Angle
     """Angle, right-handed."""
     axial: Literal["held", "free"] = "held"
-    """Whether the face keeps its height."""
+    """Whether the points of the face keep their heights, as if glued to a rigid plate, or each moves freely along z."""
+    about: tuple[Length, Length] = (0.0, 0.0)
+    """Coordinates x and y of the axis, such as the middle of a block, which has a corner at the origin."""
 
 
 class PressureCondition(FaceCondition):

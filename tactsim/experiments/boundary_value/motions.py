@@ -68,7 +68,8 @@ def _prescribed(name: str, condition: AnyCondition, parts: Parts) -> list[Prescr
         return [Translation(name, _unknowns(mesh.dim, facets, axis), 0.0) for axis in range(mesh.dim)]
     if isinstance(condition, RotationCondition):
         nodes = np.unique(facets)
-        turned: list[PrescribedMotion] = [Rotation(name, nodes, mesh.nodes[nodes], condition.angle)]
+        arms = mesh.nodes[nodes] - [*condition.about, 0.0]
+        turned: list[PrescribedMotion] = [Rotation(name, nodes, arms, condition.angle)]
         return turned + ([Translation(name, _unknowns(mesh.dim, facets, 2), 0.0)] if condition.axial == "held" else [])
     return []
 

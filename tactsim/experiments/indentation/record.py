@@ -24,6 +24,7 @@ from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mechanics.models.solid_model import SolidModel
 from tactsim.mechanics.outcome.contact_history import LAST
+from tactsim.mechanics.outcome.contact_quality import FINER
 from tactsim.mechanics.outcome.contact_record import (
     ERROR_IN_TIME,
     UNPRINTED,
@@ -184,6 +185,8 @@ class IndentationRecord(ContactRecord[PressedModel]):
     def warnings(self) -> list[str]:
         """Warnings about volumes and ellipticity, and of a history that leaves what it is meant for."""
         warnings = super().warnings()
+        if not self.quality.touched:
+            warnings.append(f"no point of the surface has touched: so small a contact lies between them; {FINER}")
         if self._clock is not None:
             warnings += self._left_behind([step.values for step in self.steps])
         return warnings

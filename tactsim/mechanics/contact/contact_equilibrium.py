@@ -139,11 +139,12 @@ def _after_snap(problem: Problem, state: ContactEquilibrium, load: float, action
     divisible = action.relaxation is None and action.force is None
     near = min(load, state.load + SNAP_LENGTH * load) if divisible else load
 
-    def solve(guess: Array, drag: Sequence[FollowerLoad]) -> ContactEquilibrium:
+    def solve(now: ContactEquilibrium, drag: Sequence[FollowerLoad]) -> ContactEquilibrium:
         dragged = replace(action, loads=[*action.loads, *drag])
-        return _equilibrium(problem, state, near, guess, dragged, from_guess=True)
+        place = near if action.force is None else now.load  # which is where the rigid bodies are, as the body is at ``now``
+        return _equilibrium(problem, state, place, now.unknowns, dragged, from_guess=True)
 
-    snapped = after_snap(problem.body, state.unknowns, solve, lambda reached: reached.unknowns)
+    snapped = after_snap(problem.body, state, solve)
     if near == load:
         return snapped
     beyond = _equilibrium(problem, snapped, load, snapped.unknowns, action)

@@ -12,7 +12,7 @@ with a drag c in proportion to the volume, which falls from step to step until t
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
@@ -29,21 +29,24 @@ unstable body lets it move away fastest."""
 MOST_STEPS = 30
 """Steps in pseudo-time before a snap counts as failed."""
 
-State = TypeVar("State")
+
+class Snapping(Protocol):
+    """A state on the way."""
+
+    @property
+    def unknowns(self) -> Array:
+        """Those of the body."""
 
 
-def after_snap(
-    body: Body,
-    state: Array,
-    solve: Callable[[Array, Sequence[FollowerLoad]], State],
-    unknowns: Callable[[State], Array],
-) -> State:
-    """What ``solve`` gives without drag, reached from the unknowns (size,) of a ``state`` by steps with it.
+State = TypeVar("State", bound=Snapping)
+
+
+def after_snap(body: Body, state: State, solve: Callable[[State, Sequence[FollowerLoad]], State]) -> State:
+    """What ``solve`` gives without drag, reached from a ``state`` by steps with it.
 
     Parameters
     ----------
-    solve : (guess, further loads) -> an equilibrium
-    unknowns : of such an equilibrium
+    solve : (state to start from, further loads) -> an equilibrium
 
     Raises
     ------
@@ -54,7 +57,7 @@ def after_snap(
     too_little = 2 * FIRST_DRAG
     for _ in range(MOST_STEPS):
         try:
-            now = unknowns(solve(now, [AnchoredSprings(body, drag, now)]))
+            now = solve(now, [AnchoredSprings(body, drag, now.unknowns)])
         except ConvergenceError as error:
             solutions += error.solutions
             drag, too_little = drag * MORE, drag

@@ -45,14 +45,14 @@ class Translation:
 
 @dataclass(frozen=True)
 class Rotation:
-    """Nodes at ``places`` (n, 3) in m turn about the z axis by ``angle`` in rad times the factor; z stays as it is.
+    """Nodes at ``arms`` (n, 3) in m from an axis along z turn about it by ``angle`` in rad times the factor; z stays as it is.
 
     ``nodes`` (n,) are their numbers.
     """
 
     name: str
     nodes: Array
-    places: Array
+    arms: Array
     angle: float
 
     @property
@@ -62,7 +62,7 @@ class Rotation:
 
     def values(self, factor: float) -> Array:
         """Displacements (2 n,) in m, x before y: exact for any angle."""
-        x, y = self.places[:, 0], self.places[:, 1]
+        x, y = self.arms[:, 0], self.arms[:, 1]
         cosine, sine = np.cos(factor * self.angle), np.sin(factor * self.angle)
         return np.concatenate([(cosine - 1) * x - sine * y, sine * x + (cosine - 1) * y])
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from tactsim.errors import ConvergenceError
@@ -51,8 +54,28 @@ def test_what_never_comes_to_rest_is_an_error(monkeypatch: pytest.MonkeyPatch) -
 
     body = Indentation.example().model().body
     with pytest.raises(ConvergenceError, match="no equilibrium after a snap") as caught:
-        contact_equilibrium.after_snap(body, body.space.nodes.ravel(), stuck, lambda reached: reached)
+        contact_equilibrium.after_snap(body, SimpleNamespace(unknowns=np.zeros(body.space.size)), stuck)
     assert caught.value.solutions > 0
+
+
+@pytest.mark.parametrize("force", [None, 1.0])
+def test_under_a_force_each_step_starts_from_where_the_last_left_the_rigid_body(
+    force: float | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A body displaced by the last step, under a rigid body that has not followed, would be pressed by a force from nowhere."""
+    body, began = Indentation.example().model().body, []
+
+    def creeping(problem: object, state: object, load: float, *_: object, **__: object) -> SimpleNamespace:
+        began.append(load)
+        return SimpleNamespace(load=load + 1e-6, unknowns=np.zeros(body.space.size), iterations=1)
+
+    monkeypatch.setattr(contact_equilibrium, "_equilibrium", creeping)
+    problem, state = SimpleNamespace(body=body), SimpleNamespace(load=1e-3, unknowns=np.zeros(body.space.size))
+    action = contact_equilibrium.Action(directions=(), force=force, relaxation=None if force else object())
+    contact_equilibrium._after_snap(problem, state, 1e-3, action)
+    expected = 1e-3 + 1e-6 * np.arange(len(began)) * (force is not None)
+    assert len(began) > 1
+    np.testing.assert_allclose(began, expected, rtol=1e-12)
 
 
 DEEP = {

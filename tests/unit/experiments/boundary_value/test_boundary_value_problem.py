@@ -154,7 +154,8 @@ def test_a_rigid_body_that_never_touches_is_warned_of(away, warned):
     sphere = {"face": "top", "side": "top", "body": {"kind": "sphere", "radius": SIDE}, "z": away}
     fields = {"dimension": "axisymmetric", "geometry": ROD, "conditions": [{"kind": "clamped", "face": "bottom"}], "steps": 2}
     warnings = result_of(**fields, contacts=[sphere], asked=asked("contact_force", component="z")).warnings
-    assert [warning.startswith("rigid body 1 (sphere from the top) never touches the body at top") for warning in warnings] == (
+    never = [warning for warning in warnings if "never touches" in warning]
+    assert [warning.startswith("rigid body 1 (sphere from the top) never touches the body at top") for warning in never] == (
         [True] if warned else []
     )
 
