@@ -213,15 +213,15 @@ class IndentationRecord(ContactRecord[PressedModel]):
         return IndentationScene(**self._pressed(), contact=self._contact())
 
     def _contact(self) -> ContactProfile | None:
-        """The contact pressure of the body along the surface of a section at the last kept state; none before the first."""
+        """The contact pressure along the surface of a section at the last kept state; none before the first."""
         if not self._kept:
             return None
         model, state = max(self._kept.values(), key=_time_of)
-        contact = state.contact.contacts[0]
         displacement = model.displacement(state.contact.unknowns)
         weights, edges = model.points.weights, (-1, model.points.per_facet)
         area = weights.reshape(edges).sum(axis=1)
-        at_points = (model.reference + displacement)[0], contact.at(displacement).pressure
+        pressures = [contact.at(displacement).pressure for contact in state.contact.contacts]
+        at_points = (model.reference + displacement)[0], np.sum(pressures, axis=0)
         radius, pressure = ((weights * values).reshape(edges).sum(axis=1) / area for values in at_points)
         if not pressure.any():
             return None

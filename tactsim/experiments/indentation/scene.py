@@ -40,7 +40,7 @@ class IndentationScene(PressedBodyScene):
 
     kind: Literal["indentation"] = "indentation"
     contact: ContactProfile | None = None
-    """Of the body at the last kept state; null where it does not touch."""
+    """Of the body, and of the inner sensor once the tissue has reached it, at the last kept state; null where nothing touches."""
 
 
 class TimedIndentationScene(PressedBodyScene):

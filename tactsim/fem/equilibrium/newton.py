@@ -29,8 +29,12 @@ CYCLE_RATIO = 0.9
 FORCING, LARGEST_FORCING = 0.5, 1e-2
 """Error of a linear step over its size, over the residual that it starts from, and at most. In proportion to the residual it
 leaves Newton quadratic (Dembo, Eisenstat & Steihaug 1982, doi:10.1137/0719025). Direct solvers are exact anyway."""
+LARGEST_GROWTH = 4.0
+"""A step that multiplies the unbalanced forces by more is halved: what contact and friction add while their states change stays
+below that, one that goes astray reaches 5 to 500."""
 NEAR = 0.1
-"""Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step."""
+"""Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step, and
+below which a step that goes astray is no reason to mistrust those that follow."""
 CONTRACTION = 0.3
 """A step with an old factor that leaves more than this part of the residual is dropped."""
 MOST_FURTHER = 5.0
@@ -198,8 +202,9 @@ class _Solution:
     def _searched(
         self, before: NewtonState, step: NewtonStep, damping: float, kinematics: Kinematics
     ) -> tuple[float, NewtonState]:
-        """The step length and the state after it; once the residual has cycled, halved until the unbalanced forces shrink."""
-        for halved in range((self._options.search_halvings if self._searching else 0) + 1):
+        """The step length and the state after it: halved until the unbalanced forces grow by no more than ``LARGEST_GROWTH``, and
+        until they shrink once the residual has cycled or a step has gone astray far from equilibrium."""
+        for halved in range(self._options.search_halvings + 1):
             if halved:
                 damping /= 2
                 kinematics = self._body.kinematics(before.unknowns + damping * step.unknowns)
@@ -208,8 +213,9 @@ class _Solution:
                 kinematics,
                 before.rigid_displacement + damping * step.rigid_displacement,
             )
-            if after.unbalanced < before.unbalanced:
+            if after.unbalanced < (1.0 if self._searching else LARGEST_GROWTH) * before.unbalanced:
                 break
+            self._searching = self._searching or before.residual > NEAR
         return damping, after
 
     def _cycles(self) -> bool:

@@ -14,7 +14,7 @@ class NewtonOptions:
     max_iterations: int = 25
     smallest_damping: float = 1 / 256
     search_halvings: int = 5
-    """How often a step is halved for a smaller residual, once the residual has cycled."""
+    """How often a step is halved at most because of the unbalanced forces that it leaves."""
     patience: int = 8
     """Newton gives up when this many iterations in a row have not halved the smallest residual before them."""
     start_patience: int | None = None

@@ -13,6 +13,7 @@ from tactsim.deadline import time_limit
 from tactsim.errors import ConvergenceError, OutOfTime
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium import newton
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.solvers.linear import direct_solver
@@ -175,6 +176,39 @@ def test_newton_gives_up_a_start_that_brings_nothing_if_asked(dim):
         snapped(dim, 0, start_patience=3)
     assert len(hasty.value.history) == 4 < len(patient.value.history)
     assert min(hasty.value.history) > 0.5 * hasty.value.history[0]
+
+
+class Stiffens(Snaps):
+    """Springs whose force in Pa grows by e with every width."""
+
+    def converged(self, displacement):
+        traction = np.zeros_like(displacement)
+        traction[-1] = -self._strength * np.expm1(displacement[-1] / self._width)
+        return traction
+
+    def linearised(self, displacement, iterate):
+        derivative = np.zeros((len(displacement), *displacement.shape))
+        derivative[-1, -1] = -self._strength / self._width * np.exp(displacement[-1] / self._width)
+        return SimpleNamespace(traction=self.converged(displacement), derivative=derivative, coupling=np.zeros_like(derivative))
+
+
+@pytest.mark.parametrize("dim", [2, 3])
+def test_a_step_that_goes_astray_is_halved_at_once(dim, monkeypatch):
+    """Pulled up against springs that hardly resist at first, a block overshoots: forces then grow by e for each width too far."""
+    body, fixed, force = block(dim, MATERIALS["linear"], held_axes=range(dim))
+    mesh = box([1.0] * dim, [2] * dim, jitter=0.1)
+    points = body.space.surface_points(facets_where(mesh, on_plane(dim - 1, 1.0)))
+    rest = np.zeros(body.space.size)
+    rise = float(body.space.split(Problem(body, fixed).solve(rest, nodal_force=force).unknowns)[0][-1].max())
+    springs = [Stiffens(SurfaceAssembly(points, body.pattern, dim), strength=1e-3, width=rise / 30)]
+
+    def solved():
+        return Problem(body, fixed).solve(rest, interfaces=springs, nodal_force=force)
+
+    assert solved().history[-1] < NewtonOptions().tolerance
+    monkeypatch.setattr(newton, "LARGEST_GROWTH", np.inf)
+    with pytest.raises(ConvergenceError, match="did not converge"):
+        solved()
 
 
 def test_solving_ends_with_an_error_once_its_time_has_passed_and_only_then():

@@ -109,6 +109,10 @@ def test_run_goes_past_the_touch_with_both_sensors_loaded(plain):
     assert last["sensor_force"] > 0
     assert last["reaction_force"] + last["sensor_force"] == pytest.approx(last["base_force"], rel=1e-8)
     assert last["tissue_rise"] < 0.2e-3 + 4e-7, "the sensor holds the tissue back"
+    contact = beyond.scene_as(IndentationScene).contact
+    radius, force = np.array(contact.radius), np.array(contact.pressure) * np.array(contact.area)
+    on_sensor = force[radius < thin().body.inner_radius].sum()
+    assert on_sensor == pytest.approx(last["sensor_force"], rel=0.02), "nearly level there, and drawn with the annulus"
     assert beyond.quantities["threshold_force"].value == pytest.approx(plain.quantities["threshold_force"].value, rel=1e-9)
 
 
