@@ -16,8 +16,8 @@ class Indentation(DisplacedSetup, Experiment):
     >>> import tactsim as ts
     >>> specimen = ts.Specimen(material="icf_stable", thickness="6 mm", radius="12 mm")
     >>> press = ts.Indentation(specimen=specimen, recess="0.4 mm", displacement="2 mm")
-    >>> press.extent  # of press.run(), which takes some seconds
-    ('displacement', 0.002)
+    >>> press.extent  # what ends press.run(), which takes some seconds: the touch of the inner sensor
+    ('tissue_rise', 0.0004)
     """
 
     kind: Literal["indentation"] = "indentation"

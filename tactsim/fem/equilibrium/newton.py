@@ -213,10 +213,17 @@ class _Solution:
                 kinematics,
                 before.rigid_displacement + damping * step.rigid_displacement,
             )
-            if after.unbalanced < (1.0 if self._searching else LARGEST_GROWTH) * before.unbalanced:
+            if after.unbalanced < self._most_unbalanced(before):
                 break
             self._searching = self._searching or before.residual > NEAR
         return damping, after
+
+    def _most_unbalanced(self, before: NewtonState) -> float:
+        """Unbalanced forces in N that a step may leave: any if the body has none, as before a force makes it touch."""
+        if self._searching:
+            return before.unbalanced
+        counts = before.unbalanced > 0 and self._forces.load_control is None
+        return LARGEST_GROWTH * before.unbalanced if counts else np.inf
 
     def _cycles(self) -> bool:
         """Whether the residual has returned to where it was, as when contact points change their state in a cycle. From then on

@@ -43,7 +43,7 @@ def test_it_says_line_band_and_limits(result):
     written = text_of(figure)
     offset = result.quantities["intercept"].value / result.quantities["slope"].value
     assert f"F = {1e-3 / result.quantities['slope'].value:.2f} C − {offset:.3f} (N, mS)" in written
-    assert f"{100 * result.quantities['linearity_negative'].value:+.3g} %" in written
+    assert f"−{-100 * result.quantities['linearity_negative'].value:.3g} %" in written
     for part in ("95 % band", "conductance in mS", "force in N", "% of 25 N"):
         assert part in written
     assert "left out" not in written
