@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.case.model import Case
+from tactsim.case.writing import case_text
 from tactsim.errors import InputError, UnknownName
+from tactsim.interfaces import Experiment
 from tactsim.interfaces.drawing import begin_all
 from tactsim.outside.text import one_line
 from tactsim.plotting import figures_for
@@ -101,6 +103,11 @@ def save(result: Result, directory: str | Path, *, force: bool = False, fields: 
     drawn = {f"{name}.png": encoded(figure) for name, figure in result.plot().items()}
     kept = result if fields else replace(result, frames=())
     return write_result(kept, directory, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
+
+
+def case_html(case: Case | Experiment) -> str:
+    """A case as its file would be written: what was given, with units."""
+    return f"<pre>{markup.escape(case_text(case))}</pre>"
 
 
 def html(result: Result) -> str:

@@ -1,4 +1,4 @@
-"""Where a result finds what draws, keeps and shows it: a room far above, named by the package's face, loaded when it is asked."""
+"""Where results and cases find what draws, keeps and shows them: a room far above, named by the package's face, loaded late."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _place = ""
 
 
 def presented_by(module: str) -> None:
-    """Name the module that shows results; it has the functions ``figures``, ``field_mesh``, ``save`` and ``html`` of a result."""
+    """Name the module: ``figures``, ``field_mesh``, ``save`` and ``html`` of a result, ``case_html`` of a case."""
     global _place
     _place = module
 

@@ -214,6 +214,15 @@ def test_a_notebook_begins_with_the_threshold_and_unfolds_what_is_beyond_twelve(
     assert ("2 more" in hidden, "filler_10" in shown, "filler_11" in hidden) == (True, False, True)
 
 
+def test_a_notebook_shows_a_case_as_its_file():
+    case = ts.load_case("annulus_icf", {"experiment.recess": "0.4 mm"})
+    shown = case._repr_html_()
+    assert shown == f"<pre>{case_text(case)}</pre>"
+    assert "recess: 400 µm" in shown
+    assert "kind: indentation" in case.experiment._repr_html_()
+    assert "&lt;b&gt;" in case.model_copy(update={"title": "<b>bold</b>"})._repr_html_()
+
+
 def test_a_result_shows_itself(result: ts.Result) -> None:
     (name, figure), *_ = result.plot().items()
     assert (name, figure.get_size_inches()[0] > 3) == ("closed_form", True)

@@ -15,6 +15,7 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Progress
 from tactsim.model import FrozenModel
 from tactsim.outside.library_warnings import collected_warnings
+from tactsim.presenter import presenter
 from tactsim.registry import Registered, kind_class, kinds
 from tactsim.results.provenance import provenance
 from tactsim.results.result import Result
@@ -48,6 +49,10 @@ class Case(FrozenModel):
     """What to compute."""
     output: Output = Output()
     """What to write."""
+
+    def _repr_html_(self) -> str:
+        text: str = presenter().case_html(self)
+        return text
 
     @property
     def case_id(self) -> str:

@@ -18,6 +18,7 @@ from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory,
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
 from tactsim.kind import CaseKind
+from tactsim.presenter import presenter
 from tactsim.progress import quiet, step_bar
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import FieldFrame, Result, Status, StepRecord
@@ -89,6 +90,10 @@ class Runnable(CaseKind):
     def doubts(self) -> list[str]:
         """What looks wrong in the case, such as a unit: shown on a terminal before the run, and a warning of every result."""
         return []
+
+    def _repr_html_(self) -> str:
+        text: str = presenter().case_html(self)
+        return text
 
     def vary(self, places: Mapping[str, Any]) -> Variation:
         """The experiment with distributions at some places: ``{"thickness": tactsim.uniform("2 mm", "6 mm")}``.
