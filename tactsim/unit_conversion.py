@@ -108,12 +108,21 @@ def compact(value: float, unit: str, style: str) -> tuple[float, str]:
     """
     if (unit == "s" and abs(value) >= 1) or (unit == "Pa" and 1e-3 <= abs(value) < 1):
         return value, unit
-    if unit in PLAIN:
-        power = 3 * math.floor(math.log10(abs(value)) / 3)
-        return (value * float(f"1e{power}") ** -1, SHOWN_PREFIXES[power] + unit) if power in SHOWN_PREFIXES else (value, unit)
+    words, inverse = unit.removeprefix("1/").split("/"), unit.startswith("1/")
+    if len(words) <= 2 - inverse and PLAIN.keys() >= set(words):
+        return _prefixed(value, "/".join(PLAIN[word] for word in words), inverse=inverse)
     given = _registry().Quantity(value, unit)
     quantity = given.to_compact()
     if any(word.startswith(RARE_PREFIXES) for word, _ in quantity.unit_items()):
         quantity = given
     text = format(quantity.units, f"~{style}")
     return quantity.magnitude, METRES_FIRST.sub(r"\3\2\1", text)
+
+
+def _prefixed(value: float, unit: str, *, inverse: bool) -> tuple[float, str]:
+    """What `compact` makes of a value in a unit of one word, or of one word over another, or in its inverse."""
+    size, one = math.log10(abs(value)) / 3, "1/" if inverse else ""
+    power = 3 * (math.ceil(-size) if inverse else math.floor(size))
+    if power not in SHOWN_PREFIXES:
+        return value, one + unit
+    return value * float(f"1e{power}") ** (1 if inverse else -1), f"{one}{SHOWN_PREFIXES[power]}{unit}"

@@ -116,8 +116,8 @@ DIMENSIONS = {
 
 SHOWN_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9: "G"}
 """Exponent of the factor of a prefix in which numbers are shown -> its symbol."""
-PLAIN = frozenset({"m", "s", "A", "Hz", "N", "Pa", "J", "W", "C", "V", "F", "S"})
-"""Units that most quantities have; a prefix before one of them can be nothing else."""
+PLAIN = {unit: unit for unit in ("m", "s", "A", "Hz", "N", "Pa", "J", "W", "C", "V", "F", "S")} | {"ohm": "Ω"}
+"""Units that most quantities have -> how they are shown; a prefix before one of them can be nothing else."""
 
 
 @cache
@@ -131,7 +131,10 @@ def _powers_of_ten() -> dict[str, int]:
 
 
 def prefix_power(unit: str, given_unit: str) -> int | None:
-    """The exponent of ten by which a plain unit with an SI prefix differs from it; None of any other pair."""
+    """The exponent of ten by which a plain unit with an SI prefix, or one over the same, differs from it; None of other pairs."""
+    (unit, *below), (given_unit, *given_below) = unit.split("/"), given_unit.split("/")
+    if below != given_below or len(below) > 1 or not PLAIN.keys() >= set(below):
+        return None
     prefix = given_unit.removesuffix(unit) if unit in PLAIN and given_unit.endswith(unit) else None
     return None if prefix is None else _powers_of_ten().get(prefix)
 

@@ -11,7 +11,7 @@ from pydantic import TypeAdapter, ValidationError
 
 from tactsim.errors import InvalidQuantity
 from tactsim.unit_conversion import _registry, compact, factor_to
-from tactsim.unit_definitions import PLAIN, PREFIXED, SHOWN_PREFIXES, UNPREFIXED, _powers_of_ten
+from tactsim.unit_definitions import PLAIN, PREFIXED, SHOWN_PREFIXES, UNPREFIXED, _powers_of_ten, prefix_power
 from tactsim.units import Length, compact_unit, format_quantity, parse_quantity, written_quantity
 
 
@@ -140,10 +140,41 @@ def test_a_plain_unit_is_read_and_shown_with_a_prefix_as_pint_does_it(unit: str)
         expected = pints.Quantity(value, unit)
         short = expected.to_compact()
         unprefixed = (unit == "s" and abs(value) >= 1) or (unit == "Pa" and 1e-3 <= abs(value) < 1)
-        if f"{short.units:~P}".removesuffix(unit) in SHOWN_PREFIXES.values() and not unprefixed:
+        if f"{short.units:~P}".removesuffix(PLAIN[unit]) in SHOWN_PREFIXES.values() and not unprefixed:
             expected = short
         for style in "PC":
             number, text = compact(value, unit, style)
+            assert (f"{number:.5g}", text) == (f"{expected.magnitude:.5g}", format(expected.units, f"~{style}"))
+
+
+@pytest.mark.parametrize("unit", ["N/m", "S/N", "V/N", "Pa/s", "m/s", "J/m", "S/F", "Pa/A", "ohm/N"])
+def test_a_quotient_is_read_and_shown_with_a_prefix_above_the_line_as_pint_does_it(unit: str) -> None:
+    symbol = f"{_registry().Quantity(1.0, unit).units:~P}"
+    for given in (f"m{unit}", f"kilo{unit}"):
+        assert prefix_power(unit, given) == round(np.log10(_registry().Quantity(1.0, given).to(unit).magnitude))
+    assert prefix_power(unit, f"{unit}/s") is prefix_power(unit, f"{unit}**2") is prefix_power(f"{unit}/V", f"{unit}/V") is None
+    generator = np.random.default_rng(5)
+    for value in 10.0 ** generator.uniform(-15, 15, 60) * generator.choice([-1, 1], 60):
+        expected = _registry().Quantity(float(value), unit)
+        short = expected.to_compact()
+        if f"{short.units:~P}".removesuffix(symbol) in SHOWN_PREFIXES.values():
+            expected = short
+        for style in "PC":
+            number, text = compact(float(value), unit, style)
+            assert (f"{number:.5g}", text) == (f"{expected.magnitude:.5g}", format(expected.units, f"~{style}"))
+
+
+@pytest.mark.parametrize("unit", ["m", "Pa", "s", "ohm"])
+def test_an_inverse_is_shown_with_a_prefix_as_pint_does_it(unit: str) -> None:
+    generator = np.random.default_rng(6)
+    shown = [f"1/{prefix}{PLAIN[unit]}" for prefix in SHOWN_PREFIXES.values()]
+    for value in 10.0 ** generator.uniform(-15, 15, 60) * generator.choice([-1, 1], 60):
+        expected = _registry().Quantity(float(value), f"1/{unit}")
+        short = expected.to_compact()
+        if f"{short.units:~P}" in shown:
+            expected = short
+        for style in "PC":
+            number, text = compact(float(value), f"1/{unit}", style)
             assert (f"{number:.5g}", text) == (f"{expected.magnitude:.5g}", format(expected.units, f"~{style}"))
 
 
