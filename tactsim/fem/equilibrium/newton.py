@@ -29,9 +29,10 @@ CYCLE_RATIO = 0.9
 FORCING, LARGEST_FORCING = 0.5, 1e-2
 """Error of a linear step over its size, over the residual that it starts from, and at most. In proportion to the residual it
 leaves Newton quadratic (Dembo, Eisenstat & Steihaug 1982, doi:10.1137/0719025). Direct solvers are exact anyway."""
-LARGEST_GROWTH = 4.0
-"""A step that multiplies the unbalanced forces by more is halved: what contact and friction add while their states change stays
-below that, one that goes astray reaches 5 to 500."""
+LARGEST_GROWTH, DISTORTED = 4.0, 0.75
+"""A step that multiplies the unbalanced forces by more, and leaves less than this part of the smallest J or more than its inverse
+of the largest, has gone astray and is halved. Forces alone do not say so: where points of a contact change their state, they may
+grow a hundredfold on the way to it."""
 NEAR = 0.1
 """Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step, and
 below which a step that goes astray is no reason to mistrust those that follow."""
@@ -202,8 +203,8 @@ class _Solution:
     def _searched(
         self, before: NewtonState, step: NewtonStep, damping: float, kinematics: Kinematics
     ) -> tuple[float, NewtonState]:
-        """The step length and the state after it: halved until the unbalanced forces grow by no more than ``LARGEST_GROWTH``, and
-        until they shrink once the residual has cycled or a step has gone astray far from equilibrium."""
+        """The step length and the state after it: halved while it goes astray, and until the unbalanced forces shrink once the
+        residual has cycled or a step far from equilibrium has gone astray."""
         for halved in range(self._options.search_halvings + 1):
             if halved:
                 damping /= 2
@@ -213,17 +214,10 @@ class _Solution:
                 kinematics,
                 before.rigid_displacement + damping * step.rigid_displacement,
             )
-            if after.unbalanced < self._most_unbalanced(before):
+            if not (self._searching or _gone_astray(before, after)) or after.unbalanced < before.unbalanced:
                 break
             self._searching = self._searching or before.residual > NEAR
         return damping, after
-
-    def _most_unbalanced(self, before: NewtonState) -> float:
-        """Unbalanced forces in N that a step may leave: any if the body has none, as before a force makes it touch."""
-        if self._searching:
-            return before.unbalanced
-        counts = before.unbalanced > 0 and self._forces.load_control is None
-        return LARGEST_GROWTH * before.unbalanced if counts else np.inf
 
     def _cycles(self) -> bool:
         """Whether the residual has returned to where it was, as when contact points change their state in a cycle. From then on
@@ -296,3 +290,10 @@ class _Solution:
         kept = J if not self._body.linear.any() else J[~self._body.linear]
         ok = np.isfinite(J).all() and (not kept.size or kept.min() > floor)  # no J is finite where an entry of F is not
         return after if ok else None
+
+
+def _gone_astray(before: NewtonState, after: NewtonState) -> bool:
+    """Whether a step has crushed or blown up elements and left far larger unbalanced forces."""
+    J, J_after = before.kinematics.J, after.kinematics.J
+    distorted = J_after.min() < DISTORTED * J.min() or J_after.max() > J.max() / DISTORTED
+    return bool(distorted and after.unbalanced > LARGEST_GROWTH * before.unbalanced)
