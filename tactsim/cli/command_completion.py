@@ -50,7 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
 
     make: Callable[[], argparse.ArgumentParser] = arguments.parser
     parser = make()
-    for command, sub in _commands(parser):
+    for command, summary, sub in _commands(parser):
+        sub.description = summary  # a line; of a longer description the shells show the beginning
         actions = sub._get_positional_actions()
         if command in NAMED:
             actions.pop(0).complete = _completed(command)  # type: ignore[attr-defined]
@@ -61,14 +62,13 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _commands(parser: argparse.ArgumentParser) -> Iterator[tuple[str, argparse.ArgumentParser]]:
-    """Name and parser of every command, and of what a command such as ``data`` does."""
+def _commands(parser: argparse.ArgumentParser) -> Iterator[tuple[str, str, argparse.ArgumentParser]]:
+    """Name, summary and parser of every command, and of what a command such as ``data`` does."""
     for action in parser._get_positional_actions():
         if isinstance(action, argparse._SubParsersAction):
             for entry in action._choices_actions:
-                name, sub = entry.dest, action.choices[entry.dest]
-                sub.description = entry.help  # a line; of a longer description the shells show the beginning
-                yield name, sub
+                sub = action.choices[entry.dest]
+                yield entry.dest, entry.help or "", sub
                 yield from _commands(sub)
 
 

@@ -134,17 +134,27 @@ def test_a_plain_unit_is_read_and_shown_with_a_prefix_as_pint_does_it(unit: str)
         assert (
             factor_to(unit, prefix + unit) == float(f"1e{power}") == float(pints.Quantity(1.0, prefix + unit).to(unit).magnitude)
         )
-    generator = np.random.default_rng(4)
-    values = 10.0 ** generator.uniform(-15, 15, 300) * generator.choice([-1, 1], 300)
-    for value in (*values.tolist(), 1e-3, 1000.0, 999.9999):
-        expected = pints.Quantity(value, unit)
-        short = expected.to_compact()
+    for value in (*spread_values(4, 300), 1e-3, 1000.0, 999.9999):
         unprefixed = (unit == "s" and abs(value) >= 1) or (unit == "Pa" and 1e-3 <= abs(value) < 1)
-        if f"{short.units:~P}".removesuffix(PLAIN[unit]) in SHOWN_PREFIXES.values() and not unprefixed:
-            expected = short
-        for style in "PC":
-            number, text = compact(value, unit, style)
-            assert (f"{number:.5g}", text) == (f"{expected.magnitude:.5g}", format(expected.units, f"~{style}"))
+        check_shown_as_by_pint(value, unit, [] if unprefixed else [prefix + PLAIN[unit] for prefix in SHOWN_PREFIXES.values()])
+
+
+def spread_values(seed: int, count: int) -> list[float]:
+    """Numbers of either sign over thirty powers of ten."""
+    generator = np.random.default_rng(seed)
+    values: list[float] = (10.0 ** generator.uniform(-15, 15, count) * generator.choice([-1, 1], count)).tolist()
+    return values
+
+
+def check_shown_as_by_pint(value: float, unit: str, shown: list[str]) -> None:
+    """With pint's prefix if the unit with it is one of those that are ``shown``, else without."""
+    expected = _registry().Quantity(value, unit)
+    short = expected.to_compact()
+    if f"{short.units:~P}" in shown:
+        expected = short
+    for style in "PC":
+        number, text = compact(value, unit, style)
+        assert (f"{number:.5g}", text) == (f"{expected.magnitude:.5g}", format(expected.units, f"~{style}"))
 
 
 @pytest.mark.parametrize("unit", ["N/m", "S/N", "V/N", "Pa/s", "m/s", "J/m", "S/F", "Pa/A", "ohm/N"])
@@ -153,29 +163,14 @@ def test_a_quotient_is_read_and_shown_with_a_prefix_above_the_line_as_pint_does_
     for given in (f"m{unit}", f"kilo{unit}"):
         assert prefix_power(unit, given) == round(np.log10(_registry().Quantity(1.0, given).to(unit).magnitude))
     assert prefix_power(unit, f"{unit}/s") is prefix_power(unit, f"{unit}**2") is prefix_power(f"{unit}/V", f"{unit}/V") is None
-    generator = np.random.default_rng(5)
-    for value in 10.0 ** generator.uniform(-15, 15, 60) * generator.choice([-1, 1], 60):
-        expected = _registry().Quantity(float(value), unit)
-        short = expected.to_compact()
-        if f"{short.units:~P}".removesuffix(symbol) in SHOWN_PREFIXES.values():
-            expected = short
-        for style in "PC":
-            number, text = compact(float(value), unit, style)
-            assert (f"{number:.5g}", text) == (f"{expected.magnitude:.5g}", format(expected.units, f"~{style}"))
+    for value in spread_values(5, 60):
+        check_shown_as_by_pint(value, unit, [prefix + symbol for prefix in SHOWN_PREFIXES.values()])
 
 
 @pytest.mark.parametrize("unit", ["m", "Pa", "s", "ohm"])
 def test_an_inverse_is_shown_with_a_prefix_as_pint_does_it(unit: str) -> None:
-    generator = np.random.default_rng(6)
-    shown = [f"1/{prefix}{PLAIN[unit]}" for prefix in SHOWN_PREFIXES.values()]
-    for value in 10.0 ** generator.uniform(-15, 15, 60) * generator.choice([-1, 1], 60):
-        expected = _registry().Quantity(float(value), f"1/{unit}")
-        short = expected.to_compact()
-        if f"{short.units:~P}" in shown:
-            expected = short
-        for style in "PC":
-            number, text = compact(float(value), f"1/{unit}", style)
-            assert (f"{number:.5g}", text) == (f"{expected.magnitude:.5g}", format(expected.units, f"~{style}"))
+    for value in spread_values(6, 60):
+        check_shown_as_by_pint(value, f"1/{unit}", [f"1/{prefix}{PLAIN[unit]}" for prefix in SHOWN_PREFIXES.values()])
 
 
 def test_a_prefix_does_not_make_a_unit_out_of_another() -> None:

@@ -294,6 +294,7 @@ class _Solution:
 
 def _gone_astray(before: NewtonState, after: NewtonState) -> bool:
     """Whether a step has crushed or blown up elements and left far larger unbalanced forces."""
+    if after.unbalanced <= LARGEST_GROWTH * before.unbalanced:
+        return False
     J, J_after = before.kinematics.J, after.kinematics.J
-    distorted = J_after.min() < DISTORTED * J.min() or J_after.max() > J.max() / DISTORTED
-    return bool(distorted and after.unbalanced > LARGEST_GROWTH * before.unbalanced)
+    return bool(J_after.min() < DISTORTED * J.min() or J_after.max() > J.max() / DISTORTED)

@@ -27,7 +27,7 @@ SMALL_CONTACTS = {1: 0.8, 2: 0.15, 4: 0.04}
 """Points of the surface that press at most -> largest error of the force.
 
 Measured: a ball on a half-space against Hertz, on elements of 0.065 to 0.15 of its radius; with five points and more 0.4 %."""
-RESOLVED = 5
+RESOLVED = max(SMALL_CONTACTS) + 1
 """Pressing points from which on nothing is said; nor is it where all points of a surface press, however few these are."""
 
 

@@ -62,11 +62,9 @@ class BoundaryValueFigures(SingleFigure):
         """The deformed body of the last frame, if there is one, and the numbers that were asked for over time."""
         scene, body = result.scene_as(BoundaryValueScene), bool(result.frames)
         where = f" at {format_quantity(result.steps[-1].values['time'], 's')}"
-        with result_figure(
-            result, ((10.0 if len(result.steps) > 1 else 8.0) if body else 6.0, 4.2), TITLE, where=where
-        ) as figure:
-            ratios = (1.2, 1.0 if len(result.steps) > 1 else 0.5)
-            axes = figure.subplots(1, 1 + body, squeeze=False, width_ratios=ratios if body else None)[0]
+        beside, ratio = (4.0, 1.0) if len(result.steps) > 1 else (2.0, 0.5)  # curves, or numbers alone
+        with result_figure(result, (6.0 + body * beside, 4.2), TITLE, where=where) as figure:
+            axes = figure.subplots(1, 1 + body, squeeze=False, width_ratios=(1.2, ratio) if body else None)[0]
             if body:
                 draw_body(axes[0], result.frames[-1], scene.dimension)
             draw_course(axes[-1], result, scene)
