@@ -20,58 +20,60 @@ QUADRATURE_DEGREE = 2
 """Four points, as in FElupe and C3D10."""
 
 
-def energies(problem: Problem, displacement: fem.Function) -> list[ufl.core.expr.Expr]:
-    """Energies per volume of the tissue and of the ball, K/2 (J - 1)^2 for the volume."""
-    c10, c01, c11, bulk, ball_bulk, ball_shear = map(float, [*problem["mooney"], *problem["bulk"], problem["ball_shear"]])
+def invariants(displacement: ufl.core.expr.Expr) -> tuple[ufl.core.expr.Expr, ...]:
+    """J, and the invariants I1 and I2 of the isochoric part of C."""
     F = ufl.Identity(3) + ufl.grad(displacement)
     J, C = ufl.det(F), F.T * F
     I1 = J ** (-2 / 3) * ufl.tr(C)
-    I2 = (I1**2 - J ** (-4 / 3) * ufl.tr(C * C)) / 2
+    return J, I1, (I1**2 - J ** (-4 / 3) * ufl.tr(C * C)) / 2
+
+
+def energies(problem: Problem, displacement: fem.Function) -> list[ufl.core.expr.Expr]:
+    """Energies per volume of the tissue and of the ball, K/2 (J - 1)^2 for the volume."""
+    c10, c01, c11, bulk, ball_bulk, ball_shear = map(float, [*problem["mooney"], *problem["bulk"], problem["ball_shear"]])
+    J, I1, I2 = invariants(displacement)
     tissue = c10 * (I1 - 3) + c01 * (I2 - 3) + c11 * (I1 - 3) * (I2 - 3) + bulk / 2 * (J - 1) ** 2
     return [tissue, ball_shear / 2 * (I1 - 3) + ball_bulk / 2 * (J - 1) ** 2]
 
 
-class Block:
-    """Quadratic displacements on straight tetrahedra, one integral for each material."""
+def domain_of(problem: Problem) -> tuple[mesh.Mesh, ufl.Measure]:
+    """Straight tetrahedra, and their volume by region."""
+    shape = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.tetrahedron, 1))
+    points = problem["nodes"][: int(problem["corner_count"])]
+    domain = mesh.create_mesh(MPI.COMM_WORLD, problem["elements"][:, :4].astype(np.int64), points, shape)
+    cells = np.arange(domain.topology.index_map(3).size_local, dtype=np.int32)
+    regions = problem["regions"][domain.topology.original_cell_index].astype(np.int32)
+    tags, metadata = mesh.meshtags(domain, 3, cells, regions), {"quadrature_degree": QUADRATURE_DEGREE}
+    return domain, ufl.Measure("dx", domain=domain, subdomain_data=tags, metadata=metadata)
+
+
+class Assembled:
+    """Forces and tangent of an energy of some unknowns, and MUMPS."""
 
     version = dolfinx.__version__
 
-    def __init__(self, problem: Problem) -> None:
-        shape = ufl.Mesh(ufl.VectorElement("Lagrange", ufl.tetrahedron, 1))
-        points = problem["nodes"][: int(problem["corner_count"])]
-        domain = mesh.create_mesh(MPI.COMM_WORLD, problem["elements"][:, :4].astype(np.int64), points, shape)
-        cells = np.arange(domain.topology.index_map(3).size_local, dtype=np.int32)
-        regions = problem["regions"][domain.topology.original_cell_index].astype(np.int32)
-        measure = ufl.Measure(
-            "dx",
-            domain=domain,
-            subdomain_data=mesh.meshtags(domain, 3, cells, regions),
-            metadata={"quadrature_degree": QUADRATURE_DEGREE},
-        )
-        space = fem.VectorFunctionSpace(domain, ("Lagrange", 2))
-        self.positions = space.tabulate_dof_coordinates()
-        self.displacement = fem.Function(space)
-        energy = sum(value * measure(region) for region, value in enumerate(energies(problem, self.displacement)))
-        force = ufl.derivative(energy, self.displacement, ufl.TestFunction(space))
-        self.force = fem.form(force)
-        self.tangent = fem.form(ufl.derivative(force, self.displacement, ufl.TrialFunction(space)))
+    def __init__(self, unknowns: fem.Function, energy: ufl.form.Form, factor: PETSc.PC.Type) -> None:
+        space = unknowns.function_space
+        force = ufl.derivative(energy, unknowns, ufl.TestFunction(space))
+        self.unknowns, self.force = unknowns, fem.form(force)
+        self.tangent = fem.form(ufl.derivative(force, unknowns, ufl.TrialFunction(space)))
         self.matrix = petsc.create_matrix(self.tangent)
         for option in (PETSc.Mat.Option.KEEP_NONZERO_PATTERN, PETSc.Mat.Option.SYMMETRIC):
             self.matrix.setOption(option, True)
-        self.solver = PETSc.KSP().create(domain.comm)
+        self.solver = PETSc.KSP().create(space.mesh.comm)
         self.solver.setOperators(self.matrix)
         self.solver.setType(PETSc.KSP.Type.PREONLY)
-        self.solver.getPC().setType(PETSc.PC.Type.CHOLESKY)
+        self.solver.getPC().setType(factor)
         self.solver.getPC().setFactorSolverType(PETSc.Mat.SolverType.MUMPS)
 
-    def forces(self, displacements: Array) -> Array:
-        """Internal forces (3 n,) in N."""
-        self.displacement.x.array[:] = displacements
+    def forces(self, unknowns: Array) -> Array:
+        """Derivative (size,) of the energy by the unknowns: internal forces in N."""
+        self.unknowns.x.array[:] = unknowns
         return petsc.assemble_vector(self.force).array.copy()
 
-    def correction(self, displacements: Array, forces: Array, held: Array, moved: Array) -> Array:
-        """Solution (3 n,) in m of the linear system whose held rows and columns are struck out."""
-        self.displacement.x.array[:] = displacements
+    def correction(self, unknowns: Array, forces: Array, held: Array, moved: Array) -> Array:
+        """Solution (size,) of the linear system whose held rows and columns are struck out."""
+        self.unknowns.x.array[:] = unknowns
         self.matrix.zeroEntries()
         petsc.assemble_matrix(self.matrix, self.tangent)
         self.matrix.assemble()
@@ -83,6 +85,18 @@ class Block:
         if self.solver.getConvergedReason() < 0:
             raise ValueError(f"MUMPS failed, PETSc's reason {self.solver.getConvergedReason()}")
         return change.array.copy()
+
+
+class Block(Assembled):
+    """Quadratic displacements, one integral for each material."""
+
+    def __init__(self, problem: Problem) -> None:
+        domain, measure = domain_of(problem)
+        space = fem.VectorFunctionSpace(domain, ("Lagrange", 2))
+        self.positions = space.tabulate_dof_coordinates()
+        displacement = fem.Function(space)
+        energy = sum(value * measure(region) for region, value in enumerate(energies(problem, displacement)))
+        super().__init__(displacement, energy, PETSc.PC.Type.CHOLESKY)
 
 
 if __name__ == "__main__":

@@ -1,19 +1,16 @@
 """GetFEM on the block in mixed form: python3 getfem_mixed_block.py PROBLEM.npz RESULT.npz.
 
-P2 displacement, continuous P1 pressure. The discrete problem is tactsim's: W(F) + p (J - 1) - p^2 / 2 K at the same four points
-of each tetrahedron. Run by the system's Python, as ``getfem_block.py``.
+Run by the system's Python, as ``getfem_block.py``.
 """
 
 from __future__ import annotations
 
-import sys
-
 import getfem
 import numpy as np
-from clamped_block import Array, Problem, numbering
+from clamped_block import Array, Problem
 from getfem_block import MACROS, QUADRATURE, _version
+from mixed_block import run
 
-ITERATIONS_LIMIT = 25
 ENERGIES = (
     "c10*(I1-3)+c01*(I2-3)+c11*(I1-3)*(I2-3)+p*(J-1)-sqr(p)/(2*bulk0)",
     "shear/2*(I1-3)+p*(J-1)-sqr(p)/(2*bulk1)",
@@ -22,9 +19,10 @@ ENERGIES = (
 
 
 class MixedBlock:
-    """Displacements and pressures; ``positions`` (n, 3) in m are those of the displacement's nodes."""
+    """Displacements and pressures, one integral for each material."""
 
     def __init__(self, problem: Problem) -> None:
+        self.version = _version()
         getfem.util_trace_level(0)
         mesh = getfem.Mesh("empty", 3)
         corners = problem["nodes"][problem["elements"][:, :4]]
@@ -51,6 +49,7 @@ class MixedBlock:
             self.model.add_nonlinear_term(integration, energy, region, True)
         first, count = self.model.interval_of_variable("u")
         self.displacements = np.arange(first, first + count)
+        self.size = len(self.model.from_variables())
 
     def forces(self, unknowns: Array) -> Array:
         """Derivative (size,) of the energy by the unknowns."""
@@ -70,29 +69,5 @@ class MixedBlock:
         return change
 
 
-def solve(problem: Problem) -> dict[str, object]:
-    """The reactions (n, 3) in N at the top after the last step, and the version."""
-    block = MixedBlock(problem)
-    numbers = numbering(problem["nodes"], block.positions)
-    top, bottom = numbers[problem["top"]], numbers[problem["bottom"]]
-    held = block.displacements[(3 * np.concatenate([top, bottom])[:, None] + np.arange(3)).ravel()]
-    unknowns = np.zeros(block.forces(np.zeros(len(block.model.from_variables()))).size)
-    forces = block.forces(unknowns)
-    for height in np.diff(problem["levels"], prepend=0.0):
-        moved = np.zeros_like(unknowns)
-        moved[block.displacements[3 * top + 2]] = height
-        for _ in range(ITERATIONS_LIMIT):
-            unknowns = unknowns + block.correction(unknowns, forces, held, moved)
-            forces, moved = block.forces(unknowns), np.zeros_like(moved)
-            if np.linalg.norm(np.delete(forces, held)) <= float(problem["tolerance"]) * np.linalg.norm(forces[held]):
-                break
-        else:
-            raise ValueError(f"no equilibrium in {ITERATIONS_LIMIT} iterations")
-    return {"forces": forces[block.displacements].reshape(-1, 3)[top], "version": _version()}
-
-
 if __name__ == "__main__":
-    path, result = sys.argv[1:]
-    with np.load(path) as stored:
-        solution = solve(dict(stored))
-    np.savez(result, **solution)
+    run(MixedBlock)
