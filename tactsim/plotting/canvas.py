@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html as markup
 import io
+import math
 import re
 import textwrap
 from abc import abstractmethod
@@ -23,6 +24,7 @@ from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.interfaces.drawing import png_source
 from tactsim.outside.text import one_line
 from tactsim.results import Result, Status
+from tactsim.unit_conversion import compact
 
 EVEN = 1e-4
 """Spread of values over their size below which they count as even."""
@@ -35,6 +37,8 @@ COMPRESSION = 2
 """Level of PNG: nearly twice as fast as the usual 6, for files an eighth larger."""
 PRINTED_RESOLUTION = 240
 """In dots per inch, of what is dense and therefore a picture inside a vector file."""
+NEXT_TO_NOTHING = 1e-9
+"""In SI: curves that are smaller are round-off, and would fill an axis in pN."""
 LONGEST_TITLE = 200
 """Characters; a case allows no longer title."""
 TITLE_MARGIN = 0.01
@@ -205,11 +209,11 @@ class SingleFigure(ResultFigures):
 
 
 def scale_of(largest: float, unit: str) -> tuple[float, str]:
-    """Factor and prefixed unit in which a size in SI reads well, like ``(1e3, "mm")``; never mPa, a letter from MPa."""
-    for exponent, prefix in ((6, "M"), (3, "k"), (0, ""), (-3, "m"), (-6, "µ"), (-9, "n")):
-        if largest >= 10.0**exponent:
-            return (1.0, unit) if prefix + unit == "mPa" else (10.0**-exponent, f"{prefix}{unit}")
-    return 1.0, unit
+    """Factor and prefixed unit in which a size in SI reads well, like ``(1e3, "mm")``; what is next to nothing has no prefix."""
+    if unit in ("", "1", "rad") or not largest >= NEXT_TO_NOTHING:
+        return 1.0, unit
+    shown, prefixed = compact(largest, unit, "P")
+    return float(f"1e{round(math.log10(shown / largest))}"), prefixed
 
 
 def ink_on(colour: Sequence[float]) -> str:

@@ -20,3 +20,14 @@ def test_the_number_drawn_lies_between_one_and_a_thousand(largest: float, prefix
 def test_a_pressure_is_never_in_a_unit_that_is_a_letter_from_the_megapascal() -> None:
     assert scale_of(0.02, "Pa") == (1.0, "Pa")
     assert scale_of(0.02, "N") == (1e3, "mN")
+
+
+def test_a_long_time_stays_in_seconds_and_an_inverse_length_is_no_thousand_of_ones():
+    assert scale_of(2000.0, "s") == (1.0, "s")
+    assert scale_of(2000.0, "1/m") == (1e-3, "1/mm")
+    assert scale_of(2e9, "Pa") == (1e-9, "GPa")
+
+
+@pytest.mark.parametrize("largest", [0.0, 1e-12, float("nan")])
+def test_what_is_next_to_nothing_has_no_prefix(largest):
+    assert scale_of(largest, "N") == (1.0, "N")

@@ -112,7 +112,7 @@ def _draw_lumen(axis: Axes, result: Result, along: Array) -> None:
 
 def _scale(curves: Sequence[Array], unit: str) -> tuple[float, str]:
     """Factor and unit in which the largest value of all curves reads well."""
-    return scale_of(max(1e-12, *(float(np.nanmax(np.abs(curve))) for curve in curves)), unit)
+    return scale_of(max(float(np.nanmax(np.abs(curve))) for curve in curves), unit)
 
 
 def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:

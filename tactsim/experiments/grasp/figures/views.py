@@ -68,12 +68,12 @@ class View:
     @property
     def force_scale(self) -> tuple[float, str]:
         """Factor and unit in which the sums of forces are shown."""
-        return scale_of(max(float(self.image.max()), 1e-12), "N")
+        return scale_of(float(self.image.max()), "N")
 
     def pressure_scale(self, grasp: ViewedGrasp) -> tuple[float, str]:
         """Factor from a sum in N to the mean pressure on the taxels that were summed, and the unit in which it is shown."""
         over = 1 / (self.summed * grasp.scene.matrix.area)
-        factor, unit = scale_of(max(over * float(self.image.max()), 1e-12), "Pa")
+        factor, unit = scale_of(over * float(self.image.max()), "Pa")
         return over * factor, unit
 
 

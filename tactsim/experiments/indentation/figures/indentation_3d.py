@@ -42,7 +42,7 @@ class Indentation3DFigures(PressedFigures):
 def _draw_around(axis: Axes, result: Result) -> None:
     """The mean pressure on each sector of the annulus against the angle about its axis."""
     pressure = result.quantities["pressure_around"].numbers
-    factor, unit = scale_of(max(float(np.abs(pressure).max()), 1e-12), "Pa")
+    factor, unit = scale_of(float(np.abs(pressure).max()), "Pa")
     edges = np.linspace(0.0, 360.0, len(pressure) + 1)
     axis.stairs(factor * pressure, edges, color=FORCE_COLOUR, linewidth=1.5)
     axis.axhline(factor * pressure.mean(), color=FORCE_COLOUR, linewidth=0.8, linestyle=":")
