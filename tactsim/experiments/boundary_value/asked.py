@@ -82,7 +82,8 @@ class AskedStress(Asked):
 
 
 class AskedForce(Asked):
-    """A component of what acts on a face from outside, of the part that is computed; all faces together balance.
+    """A component of what acts on a face from outside, of the part that is computed; all faces together balance,
+    or balance the forces per volume.
 
     Pressures, tractions, forces and rigid bodies on the face, and the reaction to the displacements that are prescribed on it. Of
     an edge whose displacement several faces prescribe each takes an equal part; of a point, each face through it.
@@ -104,14 +105,17 @@ class AskedForce(Asked):
 
 
 class AskedTorque(Asked):
-    """Moment about the z axis of what acts on a face from outside, in 3D: of the same forces as those of ``force``."""
+    """Moment about the z axis of what acts on a face from outside: of the same forces as those of ``force``.
+
+    In plane strain the axis stands on the plane at the origin.
+    """
 
     kind: Literal["torque"]
     face: str
     """Name of the face."""
 
     unit: ClassVar[str] = "N*m"
-    """Newton metre."""
+    """Newton metre; per metre of depth in plane strain."""
 
     @property
     def words(self) -> str:

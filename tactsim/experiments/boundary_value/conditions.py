@@ -1,4 +1,4 @@
-"""What is prescribed on the faces of a body: displacements, rotations, pressures, tractions and forces, and rigid bodies."""
+"""What is prescribed of a body: displacements, rotations, pressures, tractions and forces of faces, weight, and rigid bodies."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from tactsim.interfaces import RigidBody
 from tactsim.mechanics.paths.loading import Loading, pieces_of
 from tactsim.model import FrozenModel
 from tactsim.registry import Registered
-from tactsim.units import Angle, Force, Length, Pressure
+from tactsim.units import Angle, Force, ForcePerVolume, Length, Pressure
 
 AnyBody: Any = Annotated[RigidBody, Registered(RigidBody)]
 
@@ -96,13 +96,16 @@ class PointCondition(Condition, Displacement):
 
 
 class RotationCondition(FaceCondition):
-    """A face that turns about an axis along z, in 3D, its shape in the plane kept; along z it is held, or free to warp."""
+    """A face that turns about an axis along z, its shape in the plane kept; in 3D it is held along z, or free to warp.
+
+    In plane strain the axis stands on the plane: two faces that turn against each other bend the body between them.
+    """
 
     kind: Literal["rotation"]
     angle: Angle
     """Angle, right-handed."""
     axial: Literal["held", "free"] = "held"
-    """Whether the points of the face keep their heights, as if glued to a rigid plate, or each moves freely along z."""
+    """Whether in 3D the points of the face keep their heights, as if glued to a rigid plate, or each moves freely along z."""
     about: tuple[Length, Length] = (0.0, 0.0)
     """Coordinates x and y of the axis, such as the middle of a block, which has a corner at the origin."""
 
@@ -145,6 +148,20 @@ class ForceCondition(FaceCondition, Components):
     """Radial component on an axisymmetric body, the sum around the axis."""
 
 
+class BodyForceCondition(Condition, Components):
+    """A dead force on the whole body per undeformed volume, such as its weight."""
+
+    kind: Literal["body_force"]
+    x: ForcePerVolume | None = None
+    """Component along x."""
+    y: ForcePerVolume | None = None
+    """Component along y."""
+    z: ForcePerVolume | None = None
+    """Component along z; a weight has minus the density times 9.81 m/s^2."""
+    r: ForcePerVolume | None = None
+    """Radial component on an axisymmetric body."""
+
+
 AnyCondition = Annotated[
     DisplacementCondition
     | ClampCondition
@@ -152,7 +169,8 @@ AnyCondition = Annotated[
     | RotationCondition
     | PressureCondition
     | TractionCondition
-    | ForceCondition,
+    | ForceCondition
+    | BodyForceCondition,
     Field(discriminator="kind"),
 ]
 Side = Literal["left", "right", "bottom", "top", "front", "back"]

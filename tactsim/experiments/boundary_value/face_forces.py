@@ -12,11 +12,12 @@ from tactsim.mechanics.paths.history_path import TimedState
 
 
 class FaceForces:
-    """Nodal forces of the faces of one problem, whose sum over all faces is everything that acts on the body.
+    """Nodal forces of the faces of one problem, whose sum over all faces balances what acts on the volume of the body.
 
     A node at an edge belongs to several faces, so that the internal forces of the nodes of a face are not the force on it. Loads
-    and rigid bodies act on the face of their condition. What else a prescribed displacement takes, its reaction, acts on
-    the face that prescribes it, in equal parts on several. That of a point acts in equal parts on the faces through the point.
+    and rigid bodies act on the face of their condition, forces per volume on none. What else a prescribed displacement takes, its
+    reaction, acts on the face that prescribes it, in equal parts on several. That of a point acts in equal parts on the faces
+    through the point.
 
     Parameters
     ----------
@@ -38,7 +39,7 @@ class FaceForces:
         own = [*zip(self._posed.loads, loads, strict=True), *zip(self._posed.contacts, contacts, strict=True)]
         reaction = model.internal_forces(now.unknowns, state.relaxation) - sum(force for _, force in own)
         return {
-            face: share * reaction + sum(force for condition, force in own if condition.face == face)
+            face: share * reaction + sum(force for condition, force in own if getattr(condition, "face", None) == face)
             for face, share in self._shares.items()
         }
 

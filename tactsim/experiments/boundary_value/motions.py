@@ -10,7 +10,9 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.experiments.boundary_value.conditions import (
     AnyCondition,
+    BodyForceCondition,
     ClampCondition,
+    Condition,
     DisplacementCondition,
     FaceCondition,
     PointCondition,
@@ -25,7 +27,7 @@ class Held:
     """A motion; ``condition`` is what moves it, None if nothing does, and ``face`` what it holds, None if that is no face."""
 
     motion: PrescribedMotion
-    condition: FaceCondition | PointCondition | None
+    condition: Condition | None
     face: str | None
 
 
@@ -56,6 +58,8 @@ def motions_of(parts: Parts, conditions: Sequence[AnyCondition]) -> list[Held]:
 def _prescribed(name: str, condition: AnyCondition, parts: Parts) -> list[PrescribedMotion]:
     """What a condition prescribes of the displacement; nothing if it is a load."""
     mesh = parts.domain.mesh
+    if isinstance(condition, BodyForceCondition):
+        return []
     if isinstance(condition, PointCondition):
         node = parts.node(condition.at)
         given = condition.along(parts.axes)
@@ -68,9 +72,10 @@ def _prescribed(name: str, condition: AnyCondition, parts: Parts) -> list[Prescr
         return [Translation(name, _unknowns(mesh.dim, facets, axis), 0.0) for axis in range(mesh.dim)]
     if isinstance(condition, RotationCondition):
         nodes = np.unique(facets)
-        arms = mesh.nodes[nodes] - [*condition.about, 0.0]
-        turned: list[PrescribedMotion] = [Rotation(name, nodes, arms, condition.angle)]
-        return turned + ([Translation(name, _unknowns(mesh.dim, facets, 2), 0.0)] if condition.axial == "held" else [])
+        arms = mesh.nodes[nodes, :2] - condition.about
+        turned: list[PrescribedMotion] = [Rotation(name, mesh.dim * nodes, arms, condition.angle)]
+        held = mesh.dim == 3 and condition.axial == "held"
+        return turned + ([Translation(name, _unknowns(mesh.dim, facets, 2), 0.0)] if held else [])
     return []
 
 

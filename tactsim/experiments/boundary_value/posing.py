@@ -10,6 +10,7 @@ import numpy as np
 from tactsim.contact.penalty import Augmentation, Regularisation
 from tactsim.contact.traction import ContactPair
 from tactsim.experiments.boundary_value.conditions import (
+    BodyForceCondition,
     Condition,
     ContactCondition,
     ForceCondition,
@@ -21,7 +22,7 @@ from tactsim.experiments.boundary_value.parts import AT_NODE, Parts
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.experiments.boundary_value.touch import touch_of
 from tactsim.fem.assembly.body import Body
-from tactsim.fem.assembly.dead_load import DeadTraction
+from tactsim.fem.assembly.dead_load import DeadLoad, weight_of
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.assembly.space import SurfacePoints
 from tactsim.fem.assembly.surface import SurfaceAssembly
@@ -40,7 +41,7 @@ WIDEST = 1e-2
 on coarse cells are found from far away, and a tenth of it changes hardly a point from open to closed."""
 
 
-Load = PressureCondition | TractionCondition | ForceCondition
+Load = PressureCondition | TractionCondition | ForceCondition | BodyForceCondition
 
 
 @dataclass(frozen=True)
@@ -105,6 +106,12 @@ class _Posing:
 
     def _load(self, condition: Load) -> tuple[FactoredForce, float]:
         """A load, and its size at the factor one."""
+        entries = len(self._body.pattern.indices)
+        if isinstance(condition, BodyForceCondition):
+            per_volume = np.zeros(self._dim)
+            for axis, value in condition.along(self._parts.axes).items():
+                per_volume[axis] = value
+            return DeadLoad(weight_of(self._body, per_volume), entries), 1.0
         facets = self._parts.facets(condition)
         if isinstance(condition, PressureCondition) and condition.follows:
             return FollowerPressure(self._body.space, facets, self._body.pattern, condition.pressure), condition.pressure
@@ -116,7 +123,7 @@ class _Posing:
             traction = np.zeros_like(points.normals)
             for axis, value in condition.along(self._parts.axes).items():
                 traction[axis] = value / area
-        return DeadTraction(self._surface(points), traction, len(self._body.pattern.indices)), 1.0
+        return DeadLoad(self._surface(points).force(traction), entries), 1.0
 
     def _contact(self, condition: ContactCondition) -> MovedContact:
         """A rigid body at first touch."""

@@ -15,6 +15,7 @@ from tactsim.experiments.boundary_value.conditions import (
     SIDES,
     Amplitude,
     AnyCondition,
+    BodyForceCondition,
     Components,
     Condition,
     ContactCondition,
@@ -109,8 +110,8 @@ class BoundaryValueSetup(FrozenModel):
         if not (self.conditions or self.contacts):
             raise ValueError("nothing acts on the body; give conditions on its faces, or contacts")
         for number, condition in enumerate(self.conditions):
-            if isinstance(condition, RotationCondition) and self.dimension != "3d":
-                raise ValueError(f"conditions.{number}: a face turns about z in 3d only")
+            if isinstance(condition, RotationCondition):
+                _blaming(f"conditions.{number}", _check_turn, condition, self.dimension)
             if isinstance(condition, Components):
                 _blaming(f"conditions.{number}: ", condition.along, axes)
         for number, contact in enumerate(self.contacts):
@@ -127,8 +128,8 @@ class BoundaryValueSetup(FrozenModel):
                     f"asked.{name}: the material {self.material.kind} gives no energy; write its method stored_energy(F) in "
                     "J/m^3, or ask for the force and the displacement of what does the work"
                 )
-            if one.kind == "torque" and self.dimension != "3d":
-                raise ValueError(f"asked.{name}: a torque about z is asked of a body in 3d only")
+            if one.kind == "torque" and self.dimension == "axisymmetric":
+                raise ValueError(f"asked.{name}: a torque about z is asked of a body in 3d or in plane_strain")
             if one.kind == "contact_force" and one.contact > len(self.contacts):
                 raise ValueError(f"asked.{name}: there are {len(self.contacts)} contacts, none is number {one.contact}")
             if one.time is not None:
@@ -141,6 +142,9 @@ class BoundaryValueSetup(FrozenModel):
         parts = Parts.of(self.geometry, self.dimension)
         held = motions_of(parts, self.conditions)
         self._check_mirrors(parts)
+        for number, condition in enumerate(self.conditions):
+            if isinstance(condition, BodyForceCondition):
+                _blaming(f"conditions.{number}.", _check_body_force, condition, parts)
         for number, contact in enumerate(self.contacts):
             _blaming(f"contacts.{number}.", _check_touch, parts, contact)
         for name, one in self.asked.items():
@@ -225,6 +229,25 @@ class BoundaryValueSetup(FrozenModel):
         if condition.at is not None and self.dimension == "axisymmetric" and condition.at[0] != 0:
             radius = format_quantity(condition.at[0], "m")
             raise ValueError(f"at: the axis of a rigid body is that of the body, r = 0, and not {radius} away in axisymmetric")
+
+
+def _check_turn(condition: RotationCondition, dimension: str) -> None:
+    """Check that a face can turn so."""
+    if dimension == "axisymmetric":
+        raise ValueError(": a face turns about z in 3d and in plane_strain only")
+    if dimension == "plane_strain" and condition.axial == "free":
+        raise ValueError(".axial: no face of a body in plane_strain moves along z")
+
+
+def _check_body_force(condition: BodyForceCondition, parts: Parts) -> None:
+    """Check that the part that is not computed bears the mirror image of the force."""
+    along = condition.along(parts.axes)
+    for face, axis in parts.domain.mirrors.items():
+        if along.get(axis):
+            raise ValueError(
+                f"{parts.axes[axis]}: {face} is a plane of symmetry, and such a force is not its own mirror image there; "
+                "leave it out, or take a geometry without this plane"
+            )
 
 
 def _check_touch(parts: Parts, contact: ContactCondition) -> None:

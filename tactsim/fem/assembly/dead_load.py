@@ -1,26 +1,34 @@
-"""Tractions that keep their direction and their size per reference area, whatever the body does."""
+"""Loads that keep their direction and their size per reference area or volume, whatever the body does."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.assembly.body import Body
 
 
-class DeadTraction:
-    """A traction (d, n) in Pa of the reference area at the points of a surface: a dead load.
+def weight_of(body: Body, per_volume: Array) -> Array:
+    """Nodal forces (size,) in N of a force (d,) in N/m^3 of the reference volume."""
+    space, points = body.space, body.points
+    shares = np.einsum("eq,qa->ea", points.weights, points.values)
+    volumes = np.bincount(space.elements.ravel(), shares.ravel(), len(space.nodes))
+    return np.concatenate([np.outer(volumes, per_volume).ravel(), np.zeros(space.size - space.displacement_size)])
 
-    Its resultant is what a force in N is that the surface bears from the beginning; on an axisymmetric body the radial
-    components push outwards all around.
+
+class DeadLoad:
+    """Nodal ``forces`` (size,) in N that no displacement changes; ``entries`` is the number of those of the tangent.
+
+    Those of a traction on a surface come from `SurfaceAssembly.force`, those of a weight from `weight_of`. On an
+    axisymmetric body the radial components push outwards all around.
     """
 
-    def __init__(self, surface: SurfaceAssembly, traction: Array, entries: int):
-        self._force, self._entries = surface.force(traction), entries
+    def __init__(self, forces: Array, entries: int):
+        self._forces, self._entries = forces, entries
 
     def at(self, factor: float) -> FactoredLoad:
-        """The same traction times a factor."""
-        return FactoredLoad(factor * self._force, self._entries)
+        """The same load times a factor."""
+        return FactoredLoad(factor * self._forces, self._entries)
 
 
 class FactoredLoad:

@@ -45,24 +45,24 @@ class Translation:
 
 @dataclass(frozen=True)
 class Rotation:
-    """Nodes at ``arms`` (n, 3) in m from an axis along z turn about it by ``angle`` in rad times the factor; z stays as it is.
+    """Nodes at ``arms`` (n, 2) in m from an axis along z turn about it by ``angle`` in rad times the factor.
 
-    ``nodes`` (n,) are their numbers.
+    ``along_x`` (n,) are the numbers of their unknowns along x; those along y follow each.
     """
 
     name: str
-    nodes: Array
+    along_x: Array
     arms: Array
     angle: float
 
     @property
     def unknowns(self) -> Array:
         """Those of x, then those of y."""
-        return np.concatenate([3 * self.nodes, 3 * self.nodes + 1])
+        return np.concatenate([self.along_x, self.along_x + 1])
 
     def values(self, factor: float) -> Array:
         """Displacements (2 n,) in m, x before y: exact for any angle."""
-        x, y = self.arms[:, 0], self.arms[:, 1]
+        x, y = self.arms.T
         cosine, sine = np.cos(factor * self.angle), np.sin(factor * self.angle)
         return np.concatenate([(cosine - 1) * x - sine * y, sine * x + (cosine - 1) * y])
 

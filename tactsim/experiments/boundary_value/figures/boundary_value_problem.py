@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from tactsim.array import Array
 from tactsim.contact.turned import Turned
 from tactsim.experiments.boundary_value.asked import place_in_words
-from tactsim.experiments.boundary_value.conditions import AnyCondition, PointCondition
+from tactsim.experiments.boundary_value.conditions import AnyCondition, BodyForceCondition, PointCondition
 from tactsim.experiments.boundary_value.figures.course import draw_course
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
@@ -107,6 +107,9 @@ def _draw_conditions(axis: Axes, problem: BoundaryValueSetup) -> None:
         if isinstance(condition, PointCondition):
             axis.plot(*shown[parts.node(condition.at)], "o", color=colour, label=words)
             continue
+        if isinstance(condition, BodyForceCondition):
+            axis.plot([], [], " ", label=words)
+            continue
         facets = parts.facets(condition)
         if flat:
             drawn: Any = LineCollection(list(shown[facets[:, [0, 2, 1]]]), colors=colour, linewidths=3, label=words)
@@ -123,7 +126,7 @@ def _in_words(condition: AnyCondition) -> str:
     given = [
         (f"{name} = " if len(name) == 1 else "") + format_quantity(size, unit_at(of, {}, (name,))) for name, size in sizes.items()
     ]
-    place = f"point {place_in_words(condition.at)}" if isinstance(condition, PointCondition) else str(where)
+    place = f"point {place_in_words(condition.at)}" if isinstance(condition, PointCondition) else where or "whole body"
     return f"{place}: {' '.join([kind.replace('point', 'displacement'), ', '.join(given)]).strip()}"
 
 

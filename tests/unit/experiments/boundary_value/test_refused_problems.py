@@ -142,8 +142,17 @@ def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
             {"dimension": "plane_strain", "contacts": [{"face": "top", "side": "top", "body": {"kind": "jaw"}}]},
             "a jaw is not defined in plane_strain",
         ),
-        ({"dimension": "plane_strain", "asked": asked("torque", face="top")}, "in 3d only"),
-        ({"dimension": "plane_strain", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0}]}, "in 3d only"),
+        ({"dimension": "axisymmetric", "asked": asked("torque", face="top")}, "in 3d or in plane_strain"),
+        (
+            {"dimension": "axisymmetric", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0}]},
+            "in plane_strain only",
+        ),
+        (
+            {"dimension": "plane_strain", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0, "axial": "free"}]},
+            "conditions.0.axial: no face of a body in plane_strain moves along z",
+        ),
+        ({"conditions": [{"kind": "body_force", "r": 1.0}]}, "no component r; allowed: x, y, z"),
+        ({"geometry": BALL, "conditions": [{"kind": "body_force", "z": 1.0}]}, "conditions.0.z: equator is a plane of symmetry"),
     ],
 )
 def test_a_contradiction_is_refused_when_the_case_is_read(fields, words):
