@@ -49,11 +49,9 @@ class Determination:
         numbers = f"{self.data_count} numbers with a relative noise of {self.noise:.2g} determine"
         if not hidden:
             return f"{numbers} each of the {len(self.names)} constants"
-        return (
-            f"{numbers} {self.determined_combinations} combinations of the {len(self.names)} constants; they determine "
-            f"{', '.join(determined) or 'none'} alone, and do not determine {', '.join(hidden)}: trust the curves, not the "
-            "constants"
-        )
+        combinations = f"{numbers} {self.determined_combinations} combinations of the {len(self.names)} constants"
+        alone = f"{', '.join(determined)} alone, and do not determine {', '.join(hidden)}" if determined else "none of them alone"
+        return f"{combinations}; they determine {alone}: trust the curves, not the constants"
 
 
 def determination(fit: DmaFit) -> Determination:
