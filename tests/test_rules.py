@@ -56,6 +56,12 @@ def tree(path: Path) -> ast.Module:
     return ast.parse(path.read_text(encoding="utf-8"))
 
 
+@cache
+def nodes(path: Path) -> tuple[ast.AST, ...]:
+    """Every node of a module."""
+    return tuple(ast.walk(tree(path)))
+
+
 def below(node: ast.AST, prefix: str, *, public: bool = True, nested: bool = False) -> Iterator[Definition]:
     """Every function and class below a node, from the outer ones to the inner ones."""
     for child in ast.iter_child_nodes(node):
@@ -64,7 +70,7 @@ def below(node: ast.AST, prefix: str, *, public: bool = True, nested: bool = Fal
             place = f"{prefix}{child.name}"
             yield Definition(child, place, seen and not nested, nested, isinstance(node, ast.ClassDef))
             yield from below(child, f"{place}.", public=seen, nested=nested or isinstance(child, FUNCTIONS))
-        else:
+        elif not isinstance(child, ast.expr):  # which holds none
             yield from below(child, prefix, public=public, nested=nested)
 
 
@@ -177,7 +183,7 @@ def overloaded(node: ast.AST) -> bool:
 
 def silent_about_errors() -> list[str]:
     """Public functions that raise and have no section that says what."""
-    return [f.place for f in functions(public=True) if raises(f.node) and not says_raises(f)]
+    return [f.place for f in functions(public=True) if not says_raises(f) and raises(f.node)]
 
 
 def empty_names() -> list[str]:
@@ -192,7 +198,7 @@ def household_names() -> list[str]:
     for path in modules():
         place = path.relative_to(ROOT).as_posix()
         words = HOUSEHOLD | (HOUSEHOLD_IN_ENGINE if place.startswith((*ENGINE, "tactsim/mechanics/")) else set())
-        for node in ast.walk(tree(path)):
+        for node in nodes(path):
             names = (getattr(node, field, None) for field in ("name", "id", "attr", "arg"))
             broken |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in words}
     return sorted(broken - KEYS)
@@ -206,7 +212,7 @@ def array_types() -> list[str]:
 
 
 def printing() -> list[str]:
-    calls = ((path, node) for path in modules() for node in ast.walk(tree(path)) if isinstance(node, ast.Call))
+    calls = ((path, node) for path in modules() for node in nodes(path) if isinstance(node, ast.Call))
     return [f"{path.relative_to(ROOT)}:{node.lineno}" for path, node in calls if "print" in names_of(node.func)]
 
 

@@ -22,7 +22,7 @@ from tactsim.dataset import load
 from tactsim.dataset.figures import card as dataset_card
 from tactsim.errors import TactsimError
 
-QUICK = settings(derandomize=True, deadline=None, max_examples=15, suppress_health_check=list(HealthCheck))
+QUICK = settings(derandomize=True, deadline=None, max_examples=8, suppress_health_check=list(HealthCheck))
 LONG = settings(QUICK, max_examples=int(os.environ.get("FUZZ_N", "3000")))
 CODES = {0, 2, 3, 4, 5}
 MEMORY = 6 * 2**30

@@ -165,7 +165,7 @@ def test_the_table_of_exit_codes(tmp_path: Path, arguments: list[str], code: int
 def test_an_answer_lost_on_a_full_disk_is_told() -> None:
     with open("/dev/full", "w", encoding="utf-8") as full:
         told = subprocess.run(
-            [sys.executable, "-P", "-m", "tactsim", "list", "kinds"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
+            [sys.executable, "-P", "-m", "tactsim", "list", "tables"], stdout=full, stderr=subprocess.PIPE, text=True, check=False
         )
     assert told.stderr.startswith("error: cannot write all of the answer to standard output: No space left on device")
     assert told.returncode == 5
@@ -175,7 +175,7 @@ def test_an_answer_lost_on_a_full_disk_is_told() -> None:
 def test_a_working_folder_that_is_gone_is_told(tmp_path: Path, safe: bool) -> None:
     gone = tmp_path / "gone"
     gone.mkdir()
-    command = [sys.executable, *(["-P"] if safe else []), "-m", "tactsim", "list", "kinds"]
+    command = [sys.executable, *(["-P"] if safe else []), "-m", "tactsim", "list", "tables"]
     environment = {**os.environ, "PYTHONPATH": str(Path(tactsim.__file__).parents[1])}
     told = subprocess.run(
         ["sh", "-c", 'rmdir "$PWD"; exec "$@"', "sh", *command],

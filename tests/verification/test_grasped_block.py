@@ -46,6 +46,12 @@ def grasped(*, friction, closing=1e-3, steps=4, lump=None, cells=(6, 4, 3), jaw=
     return model, state
 
 
+@pytest.fixture(scope="module")
+def stuck():
+    """Model and state of the block between jaws with friction."""
+    return grasped(friction=0.6)
+
+
 def test_frictionless_taxels_read_the_cauchy_pressure(verification_record):
     model, state = grasped(friction=0.0)
     u = model.space.split(state.unknowns)[0]
@@ -73,8 +79,8 @@ def test_frictionless_taxels_read_the_cauchy_pressure(verification_record):
         assert_kills(check_total, without_gaps=(forces.total - forces.gaps,))
 
 
-def test_friction_forces_add_up_and_balance(verification_record):
-    model, state = grasped(friction=0.6)
+def test_friction_forces_add_up_and_balance(stuck, verification_record):
+    model, state = stuck
     upper, lower = (model.taxels(state, side, LAYOUT) for side in ("upper", "lower"))
     force = model.jaw_force(state, "upper")
 
@@ -115,7 +121,9 @@ def test_a_hard_lump_is_felt_by_the_jaw_that_is_nearer():
 
 
 def test_narrow_jaws_let_the_tissue_bulge_beside_them():
-    model, state = grasped(friction=0.0, cells=(8, 6, 3), jaw={"width": 0.02, "depth": 0.02, "fillet": 2e-3}, closing=3e-4)
+    model, state = grasped(
+        friction=0.0, cells=(8, 6, 3), jaw={"width": 0.02, "depth": 0.02, "fillet": 2e-3}, closing=3e-4, steps=2
+    )
 
     def check(model, state):
         heights = (model.mesh.nodes + model.space.split(state.unknowns)[0])[np.unique(model.facets["upper"]), 2]
@@ -126,8 +134,8 @@ def test_narrow_jaws_let_the_tissue_bulge_beside_them():
     assert state.regularisation.tolerance >= -min(c.at(_moved(model, state, c)).gap.min() for c in state.contacts)
 
 
-def test_a_force_closes_both_jaws_alike():
-    model, closed = grasped(friction=0.6)
+def test_a_force_closes_both_jaws_alike(stuck):
+    model, closed = stuck
     force = abs(model.jaw_force(closed, "upper")[2])
     begun = model.start(Coulomb(friction=0.6), SCALE)
     half = model.equilibrium(begun, 5e-4, begun.unknowns)

@@ -35,7 +35,7 @@ def in_root(request):
         yield
 
 
-@pytest.fixture(scope="module", params=[0.4, pytest.param(1.0, marks=pytest.mark.slow)], ids=["coarse", "whole"])
+@pytest.fixture(scope="module", params=[0.25, pytest.param(1.0, marks=pytest.mark.slow)], ids=["coarse", "whole"])
 def icf(request):
     """The record of the shipped case and its accepted states, on a coarse mesh and on its own."""
     experiment = load_case("cases/annulus_icf.yaml", [f"experiment.mesh.refinement={request.param}"]).experiment

@@ -212,7 +212,6 @@ def test_a_result_shows_its_numbers_turns_plays_and_changes_estimators(browser: 
         assert drawn(browser) > count + 2, "steps between were drawn, too"
         browser.find_element(By.CSS_SELECTOR, "[name=unit][value=kPa]").click()
         until(lambda: shows(browser, forces / 9e-3**2 / 1e3))
-        browser.save_screenshot(str(tmp_path / "result.png"))
 
 
 def test_no_estimate_is_past_and_a_slow_one_is_cancelled(browser: webdriver.Chrome, tmp_path: Path) -> None:
@@ -230,7 +229,6 @@ def test_no_estimate_is_past_and_a_slow_one_is_cancelled(browser: webdriver.Chro
         assert "estimated" not in words(browser, "legend")
         until(lambda: "parts done" in words(browser, "busy-words"))
         assert re.match(r"Computing the estimate of step 4 of 4, 1\.000 s: \d+ s so far, ", words(browser, "busy-words"))
-        browser.save_screenshot(str(tmp_path / "busy.png"))
         browser.find_element(By.ID, "cancel").click()
         until(lambda: "No estimate: cancelled" in words(browser, "estimate"))
         assert not shows_element(browser, "busy")
@@ -268,7 +266,6 @@ def test_the_estimate_stands_first_and_everything_fits_a_small_screen(browser: w
             browser.find_element(By.TAG_NAME, "body").send_keys(Keys.HOME)
             until(lambda: words(browser, "space-words") not in ("", now))
             assert "longest bar now 0.1" in words(browser, "space-words"), "of this step, not of the whole history"
-            browser.save_screenshot(str(tmp_path / "small.png"))
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
@@ -289,7 +286,6 @@ def test_small_forces_have_one_unit_and_both_tables_in_sight(browser: webdriver.
             last = "return [...document.querySelectorAll('#tables td')].at(-1).getBoundingClientRect().bottom"
             place = "return document.getElementById('tables').getBoundingClientRect().bottom"
             assert browser.execute_script(last) <= browser.execute_script(place) + 0.6, "without scrolling"
-            browser.save_screenshot(str(tmp_path / "small_forces.png"))
     finally:
         browser.execute_cdp_cmd("Emulation.clearDeviceMetricsOverride", {})
 
@@ -349,7 +345,6 @@ def test_a_localization_shows_its_estimate_first_and_draws_its_tube(browser: web
         regions = "return document.getElementById('space-canvas').dataset.regions"
         until(lambda: browser.execute_script(regions) == "3")  # of the ball, by its standard deviations, in three planes
         assert "its centre lies in here with 90 %" in words(browser, "legend")
-        browser.save_screenshot(str(tmp_path / "localized.png"))
         browser.find_element(By.TAG_NAME, "body").send_keys("2")
         until(lambda: "Tube" not in words(browser, "estimate"))
 
@@ -365,7 +360,6 @@ def test_a_sample_is_picked(browser: webdriver.Chrome, tmp_path: Path) -> None:
         number.send_keys("4", Keys.ENTER)
         until(lambda: "sample 4 is failed: ConvergenceError: residual <i>1</i>" in words(browser, "alerts"))
         assert all(np.isnan(value) for value in table(browser).values())
-        browser.save_screenshot(str(tmp_path / "sample.png"))
 
 
 @contextmanager
@@ -416,7 +410,6 @@ def test_a_live_feed_is_drawn_and_its_title_stays_text(browser: webdriver.Chrome
         assert "'<b>'; needed: a finite number" in words(browser, "alerts")
         before = drawn(browser)
         until(lambda: drawn(browser) > before + 5)
-        browser.save_screenshot(str(tmp_path / f"live{count}.png"))
         assert not greyed(browser)
     if count == 3:
         until(lambda: greyed(browser))
@@ -435,7 +428,6 @@ def test_an_ended_stream_greys_the_picture_and_a_malformed_line_is_forgotten(
         until(lambda: "1 malformed in the stream" in words(browser, "alerts"))
         until(lambda: greyed(browser))  # no frame for some seconds
         assert "no frame for" in words(browser, "past")
-        browser.save_screenshot(str(tmp_path / "past.png"))
         stream.take(line(frame_line(2.0)))
         until(lambda: not greyed(browser))
         feed.end("the sender has gone; the last frame stays")

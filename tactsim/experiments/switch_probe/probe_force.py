@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy
@@ -25,11 +26,12 @@ class ProbeCurve:
     force: Array
     contact_height: Array
     switches: Array
-    _interpolated: scipy.interpolate.PchipInterpolator = field(init=False, repr=False)
 
-    def __post_init__(self) -> None:
+    @cached_property
+    def _interpolated(self) -> scipy.interpolate.PchipInterpolator:
+        """Made when it is first used: a module holds a curve, and scipy's interpolation takes a third of a second to load."""
         columns = np.column_stack([self.force, self.contact_height, self.switches])
-        object.__setattr__(self, "_interpolated", scipy.interpolate.PchipInterpolator(self.depth, columns, extrapolate=False))
+        return scipy.interpolate.PchipInterpolator(self.depth, columns, extrapolate=False)
 
     def at(self, depth: Array) -> tuple[Array, Array, Array]:
         """Force (n,), contact height (n,) and switches (n, count) at depths (n,) in m.
