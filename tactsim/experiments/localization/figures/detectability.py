@@ -75,7 +75,11 @@ def _draw(axis: Axes, radii: Array, depths: Array, colours: Array, top: float) -
 
 
 def _name_curves(axis: Axes, radii: Array, values: Any, colours: Array) -> None:
-    """Taxels and stiffness of each curve above its end: few points make no line to look up in a legend."""
+    """Taxels and stiffness of each curve above its end: few points make no line to look up in a legend.
+
+    Those of a single point stand beside it, for above it the point of another curve may lie.
+    """
+    middle = sum(axis.get_xlim()) / 2
     for ratio, matrix in np.ndindex(*radii.shape[:2]):
         known = np.flatnonzero(np.isfinite(radii[ratio, matrix]))
         if not known.size:
@@ -83,9 +87,14 @@ def _name_curves(axis: Axes, radii: Array, values: Any, colours: Array) -> None:
         end = known[-1 if matrix % 2 == 0 else 0]
         place = (1e3 * values["depths"][end], 1e3 * radii[ratio, matrix, end])
         count, times = values["matrices"][matrix], values["shear_ratios"][ratio]
-        words = f"{count} × {count}, {times:g}×" + (", at this depth only" if known.size == 1 else "")
-        style: Any = {"color": 0.75 * colours[matrix][:3], "fontsize": 7.5, "ha": "center", "va": "bottom"}
-        axis.annotate(words, place, (0, 5), textcoords="offset points", annotation_clip=False, **style)
+        style: dict[str, Any] = {"ha": "center", "va": "bottom"}
+        words, offset = f"{count} × {count}, {times:g}×", (0, 5)
+        if known.size == 1:
+            words += ", at this depth only"
+            style, offset = ({"ha": "left"}, (7, 0)) if place[0] < middle else ({"ha": "right"}, (-7, 0))
+            style["va"] = "center_baseline"
+        style |= {"color": 0.75 * colours[matrix][:3], "fontsize": 7.5}
+        axis.annotate(words, place, offset, textcoords="offset points", annotation_clip=False, **style)
 
 
 def _legend(values: Any, colours: Array) -> list[Any]:

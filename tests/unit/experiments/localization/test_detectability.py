@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from matplotlib.figure import Figure
 from pydantic import ValidationError
 from scenes import cut_words, unmarked_figures
 from scipy.special import ndtri
@@ -16,7 +17,7 @@ from tactsim.experiments.localization.detectability_statistics import (
     smallest_radius,
     unit_templates,
 )
-from tactsim.experiments.localization.figures.detectability import DetectabilityFigures
+from tactsim.experiments.localization.figures.detectability import DetectabilityFigures, _name_curves
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.plotting import figures_for
 
@@ -151,3 +152,18 @@ def test_a_block_thinner_than_every_tabulated_ball_is_refused_before_it_is_solve
     for response in (coarse_response, lump_sensitivity.lump_response):
         with pytest.raises(InputError, match=r"2\.5 mm along its shortest side.*3 mm wide; needed: a thicker block"):
             response(thin)
+
+
+def test_words_of_a_single_point_keep_clear_of_the_point_above_it():
+    """Two curves of which one depth each is known, one just above the other."""
+    axis = Figure().add_subplot()
+    axis.set(xlim=(0.0, 20.0), ylim=(0.0, 10.0))
+    radii = np.full((1, 2, 3), np.nan)
+    radii[0, :, 1] = 8.7e-3, 9.1e-3
+    values = {"depths": np.array([5e-3, 10e-3, 15e-3]), "matrices": [3, 16], "shear_ratios": [100.0]}
+    _name_curves(axis, radii, values, np.zeros((2, 4)))
+    boxes = [text.get_window_extent() for text in axis.texts]
+    points = axis.transData.transform([(10.0, 8.7), (10.0, 9.1)])
+    assert len(boxes) == 2
+    assert not any(box.contains(*point) for box in boxes for point in points)
+    assert not boxes[0].overlaps(boxes[1])
