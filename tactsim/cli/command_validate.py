@@ -12,6 +12,7 @@ from tactsim.errors import NOT_AS_RECORDED, InputError
 from tactsim.shipped import PROGRAM
 
 if TYPE_CHECKING:
+    from tactsim.results.folder import OutputFolder
     from tactsim.validation import LoadedTables, Validation
 
 NAME = "validate"
@@ -52,15 +53,29 @@ def run(arguments: argparse.Namespace) -> int:
     TactsimError
         Whatever ends the command with an exit code of its own, such as options that do not go together.
     """
-    from tactsim.results.writing import write_files
-    from tactsim.validation import html_report, json_report, load_groups, markdown_report, summary_text
+    from tactsim.results.folder import claimed
+    from tactsim.validation import load_groups, summary_text
 
     if arguments.workers is not None and arguments.workers < 1:
         raise InputError(f"--workers {arguments.workers} is out of range; must be at least 1")
     folders = [arguments.folder] if arguments.folder else shipped_folders()
-    validations = [_validated(loaded, arguments) for loaded in load_groups(folders, arguments.tables)]
-    for validation in validations:
-        console.out(summary_text(validation))
+    groups = load_groups(folders, arguments.tables)
+    with claimed(arguments.out, replace=True) as folder:  # a place that is refused is refused before minutes of computing
+        validations = [_validated(loaded, arguments) for loaded in groups]
+        for validation in validations:
+            console.out(summary_text(validation))
+        _write(validations, folder)
+    wrong = [name for validation in validations for name in validation.wrong]
+    state = f"left their class: {', '.join(wrong)}" if wrong else "every row ended as recorded"
+    console.out(f"{state}; report {arguments.out / 'validation.html'}")
+    return NOT_AS_RECORDED if wrong else 0
+
+
+def _write(validations: Sequence[Validation], folder: OutputFolder) -> None:
+    """Writes the report in its three forms, with its figures."""
+    from tactsim.results.writing import publish_files
+    from tactsim.validation import html_report, json_report, markdown_report
+
     figures, troubles = _figures(validations)
     names = {table: list(drawn) for table, drawn in figures.items()}
     reports = {
@@ -69,13 +84,9 @@ def run(arguments: argparse.Namespace) -> int:
         "validation.md": markdown_report(validations, names).encode(),
     }
     drawings = {f"figures/{name}": content for drawn in figures.values() for name, content in drawn.items()}
-    write_files(reports | drawings, arguments.out)
+    publish_files(reports | drawings, folder)
     for trouble in troubles:
         console.note(f"warning: {trouble}")
-    wrong = [name for validation in validations for name in validation.wrong]
-    state = f"left their class: {', '.join(wrong)}" if wrong else "every row ended as recorded"
-    console.out(f"{state}; report {arguments.out / 'validation.html'}")
-    return NOT_AS_RECORDED if wrong else 0
 
 
 def _validated(loaded: LoadedTables, arguments: argparse.Namespace) -> Validation:

@@ -74,14 +74,25 @@ def write_files(files: Mapping[str, bytes], directory: str | Path) -> Path:
         If the place holds anything else, is in use or cannot be written; nothing is then changed.
     """
     with claimed(directory, replace=True) as folder:
-        with naming(folder.path):
-            target = folder.start()
-            for name, content in files.items():
-                (target / name).parent.mkdir(exist_ok=True)
-                write_bytes(target / name, content)
-        folder.finish()
-        folder.publish()
+        publish_files(files, folder)
         return folder.path
+
+
+def publish_files(files: Mapping[str, bytes], folder: OutputFolder) -> None:
+    """Writes files, by their paths with ``/``, into a claimed folder and moves it into place.
+
+    Raises
+    ------
+    StorageError
+        If they cannot be written; nothing is then changed.
+    """
+    with naming(folder.path):
+        target = folder.start()
+        for name, content in files.items():
+            (target / name).parent.mkdir(exist_ok=True)
+            write_bytes(target / name, content)
+    folder.finish()
+    folder.publish()
 
 
 def history_table(result: Result) -> str:

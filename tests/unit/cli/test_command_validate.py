@@ -73,3 +73,13 @@ def test_shipped_tables_are_found_from_anywhere(tmp_path: Path, monkeypatch: pyt
     monkeypatch.chdir(tmp_path)
     assert main(["validate", "table_3_3"]) == 0
     assert (tmp_path / "results" / "validation" / "validation.md").is_file()
+
+
+def test_a_place_that_is_taken_is_refused_before_computing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    write_tables(tmp_path / "tables")
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "thesis.docx").write_text("mine")
+    assert validate(tmp_path, "small") == 5
+    out, err = capsys.readouterr()
+    assert not out, "a table that is printed was computed"
+    assert "'thesis.docx', which tactsim did not write" in err
