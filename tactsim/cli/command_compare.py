@@ -13,6 +13,7 @@ from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     from tactsim.results import Result
+    from tactsim.results.comparison import Comparison
 
 NAME = "compare"
 SUMMARY = "put several stored results into one table and one figure"
@@ -57,11 +58,28 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def report(results: Mapping[str, Result], out: Path | None, *, everything: bool = False) -> None:
-    """Print the table, and write it with its figure if a folder is given."""
-    from tactsim.results.comparison import compared, shown_number
+def report(results: Mapping[str, Result], out: Path | None, *, everything: bool = False, quiet: bool = False) -> None:
+    """Print the table unless it is to be quiet, and write it with its figure if a folder is given."""
+    from tactsim.results.comparison import compared
 
     comparison = compared(results, _unit_of, _name_of)
+    if not quiet:
+        _print(comparison, everything)
+    if out is not None:
+        from tactsim.cli.figures.comparison import comparison_png
+        from tactsim.results.writing import write_files
+
+        picture = comparison_png(results, comparison)
+        texts = {"comparison.csv": comparison.csv_text(), "comparison.md": comparison.markdown_text()}
+        write_files({name: text.encode() for name, text in texts.items()} | {"comparison.png": picture}, out)
+        if not quiet:
+            console.out(f"comparison {one_line(out)}")
+
+
+def _print(comparison: Comparison, everything: bool) -> None:
+    """Print a row for every input that differs, and for every number, or for those that differ."""
+    from tactsim.results.comparison import shown_number
+
     width = max(6, *map(len, comparison.inputs), *(len(column.head) for column in comparison.columns))
     names = [one_line(name, LONGEST_NAME) for name in comparison.names]
     given = [[one_line(value, LONGEST_NAME) for value in values] for values in comparison.inputs.values()]
@@ -75,14 +93,6 @@ def report(results: Mapping[str, Result], out: Path | None, *, everything: bool 
     for column in comparison.columns if everything else comparison.differing:
         numbers = (shown_number(value) or "-" for value in column.values)
         console.out("  ".join([f"{column.head:<{width}}", *(f"{n:>{cell}}" for n, cell in zip(numbers, cells, strict=True))]))
-    if out is not None:
-        from tactsim.cli.figures.comparison import comparison_png
-        from tactsim.results.writing import write_files
-
-        picture = comparison_png(results, comparison)
-        texts = {"comparison.csv": comparison.csv_text(), "comparison.md": comparison.markdown_text()}
-        write_files({name: text.encode() for name, text in texts.items()} | {"comparison.png": picture}, out)
-        console.out(f"comparison {one_line(out)}")
 
 
 def _unit_of(experiment: Mapping[str, Any], path: tuple[str | int, ...]) -> str:

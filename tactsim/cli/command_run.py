@@ -91,6 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
     if repeated := [name for name in names if names.count(name) > 1]:
         raise InputError(f"two cases are called {one_line(repeated[0])}; their results would have one folder")
     root, codes = arguments.out or Path("results"), []
+    _refuse_early(arguments, [root / name for name in (*names, COMPARISON)])
     for number, path in enumerate(arguments.cases):
         if number and not arguments.quiet:
             console.out()
@@ -101,6 +102,27 @@ def run(arguments: argparse.Namespace) -> int:
     return next((code for code in codes if code), 0)
 
 
+def _refuse_early(arguments: argparse.Namespace, places: list[Path]) -> None:
+    """Refuses a case or a place that is wrong before the first of several cases is computed.
+
+    Files that a case reads are looked for when its turn comes, for a case before it may write them.
+
+    Raises
+    ------
+    TactsimError
+        What the case, or its place, would be refused with.
+    """
+    from tactsim.case.loading import read_document, validated_case
+    from tactsim.outside.library_warnings import collected_warnings
+    from tactsim.results.folder import check_replaceable
+
+    for path in arguments.cases:
+        with collected_warnings():  # its turn reports them
+            validated_case(*read_document(path, arguments.set))
+    for place in places:
+        check_replaceable(place, replace=True)
+
+
 def _compare(folders: list[Path], place: Path, arguments: argparse.Namespace) -> None:
     """Put the results of several cases into one table and one figure."""
     from tactsim.cli.command_compare import report
@@ -108,7 +130,8 @@ def _compare(folders: list[Path], place: Path, arguments: argparse.Namespace) ->
 
     if not arguments.quiet:
         console.out()
-        report({folder.name: read_result(folder, fields=False).complete for folder in folders}, place)
+    results = {folder.name: read_result(folder, fields=False).complete for folder in folders}
+    report(results, place, quiet=arguments.quiet)
 
 
 def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:

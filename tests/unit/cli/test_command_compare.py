@@ -53,6 +53,7 @@ def test_several_cases_become_one_table_and_one_figure(cases: list[str], capsys:
 def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", *cases, "--out", "designs", "--quiet"]) == 0
     assert capsys.readouterr().out == ""
+    assert Path("designs/comparison/comparison.csv").is_file(), "quiet are words alone, not files"
     assert main(["compare", "designs"]) == 0
     shown = capsys.readouterr().out.splitlines()
     assert shown[0].split() == ["large", "small"]
@@ -70,6 +71,24 @@ def test_what_cannot_be_compared_is_said(cases: list[str], capsys: pytest.Captur
     assert "nothing to be compared with" in capsys.readouterr().err
     assert main(["compare", "results/small", "nowhere"]) == 5
     assert main(["run", cases[0], f"./{cases[0]}"]) == 2
+
+
+def test_a_wrong_case_is_refused_before_another_is_computed(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    Path("wrong.yaml").write_text(CASE.format(radius="3"))
+    assert main(["run", cases[0], "wrong.yaml", "--out", "designs"]) == 2
+    assert "wrong.yaml:5: experiment.outer_radius" in capsys.readouterr().err
+    assert main(["run", cases[0], "absent.yaml", "--out", "designs"]) in (2, 5)
+    assert not Path("designs").exists()
+    Path("designs/comparison").mkdir(parents=True)
+    Path("designs/comparison/mine.txt").write_text("mine")
+    assert main(["run", *cases, "--out", "designs"]) == 5
+    assert [path.name for path in Path("designs").iterdir()] == ["comparison"]
+
+
+def test_a_case_may_read_what_one_before_it_writes(cases: list[str]) -> None:
+    Path("read.yaml").write_text("schema: tactsim/case/1\nexperiment: {kind: matrix_readout, grasp: designs/pressed}\n")
+    assert main(["run", cases[0], "read.yaml", "--out", "designs"]) == 5, "the grasp is looked for when its turn comes"
+    assert Path("designs/small/result.json").is_file()
 
 
 def pressed(tissue: str, threshold: float | None, **mesh: float) -> Result:
