@@ -23,6 +23,7 @@ from __future__ import annotations
 
 import difflib
 import math
+import re
 import reprlib
 from collections.abc import Iterable
 from typing import Any, ClassVar
@@ -127,10 +128,18 @@ class StorageError(TactsimError, OSError):
 MOST_SUGGESTED = 3
 """Names that a message suggests instead of the beginning of theirs."""
 
+_ENTRY, _NUMBER = re.compile(r"(?P<list>\w+)(?P<numbers>(\[\d+\])+)"), re.compile(r"\d+")
+
 
 def suggestion(name: str, allowed: Iterable[str]) -> str:
-    """``" (did you mean 'radius'?)"`` if an allowed name is near, those that begin with its words, else an empty string."""
+    """``" (did you mean 'radius'?)"`` if an allowed name is near, those that begin with its words, else an empty string.
+
+    An entry of a list as Python writes it, ``center[0]``, is suggested as a key path has it, ``center.0``.
+    """
     names = list(allowed)
+    entry = _ENTRY.fullmatch(name[:100])
+    if entry is not None and entry["list"] in names:
+        return f" (did you mean {'.'.join((entry['list'], *_NUMBER.findall(entry['numbers'])))!r}?)"
     near = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.6)
     near = near or sorted(other for other in names if name and other.startswith(f"{name}_"))[:MOST_SUGGESTED]
     return f" (did you mean {' or '.join(map(repr, near))}?)" if near else ""

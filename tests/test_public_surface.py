@@ -386,6 +386,7 @@ def test_a_place_that_an_experiment_lacks_cannot_vary(grasp: ts.Grasp) -> None:
     for place, words in {
         "inclusions.0.shape.raduis": r"^vary: inclusions.0.shape: unknown key 'raduis' \(did you mean 'radius'\?\); allowed:",
         "inclusions.1.shape.radius": "^vary: inclusions: a list without an entry '1'; entries: 0$",
+        "inclusions[0].shape.radius": r"^vary: unknown key 'inclusions\[0\]' \(did you mean 'inclusions.0'\?\)",
         "blok.tissue": r"^vary: unknown key 'blok' \(did you mean 'block'",
         "block.size.0.x": r"^vary: block.size.0: 0.04 has no entry 'x'$",
     }.items():

@@ -155,7 +155,10 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
                 for doubt in case.experiment.doubts():
                     console.note(f"warning: {doubt}")
             with collected_warnings() as raised, noted_by(progress and console.note):
-                result = case.experiment.run(progress, time_limit=seconds)
+                try:
+                    result = case.experiment.run(progress, time_limit=seconds)
+                except KeyboardInterrupt:
+                    raise KeyboardInterrupt(f"nothing was accepted yet, so {one_line(directory)} is not written") from None
             result = replace(result, warnings=(*result.warnings, *listed, *read.lines(), *raised.lines()))
             result = replace(result, provenance=case.provenance(case_file=path.name, overrides=arguments.set))
             with interruption.deferred():

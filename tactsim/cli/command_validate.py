@@ -31,6 +31,7 @@ examples:
   tactsim validate table_3_1 table_3_3 --out results/chapter_3
   tactsim validate table_3_2 --fresh --workers 4
 """
+NOT_WRITTEN = "no report is written; simulations that ended are kept, and the same command without --fresh goes on from there"
 GROUPS = (Path("cases", "thesis"), Path("cases", "published"))
 
 
@@ -61,7 +62,10 @@ def run(arguments: argparse.Namespace) -> int:
     folders = [arguments.folder] if arguments.folder else shipped_folders()
     groups = load_groups(folders, arguments.tables)
     with claimed(arguments.out, replace=True) as folder:  # a place that is refused is refused before minutes of computing
-        validations = [_validated(loaded, arguments) for loaded in groups]
+        try:
+            validations = [_validated(loaded, arguments) for loaded in groups]
+        except KeyboardInterrupt:
+            raise KeyboardInterrupt(NOT_WRITTEN) from None
         for validation in validations:
             console.out(summary_text(validation))
         _write(validations, folder)

@@ -115,8 +115,8 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
             return int(parsed.run(parsed))
     except SystemExit as end:  # argparse ends --help and --version this way
         return int(end.code or 0)
-    except KeyboardInterrupt:
-        console.error("interrupted")
+    except KeyboardInterrupt as stop:
+        console.error(": ".join(("interrupted", *map(str, stop.args))))
         return INTERRUPTED
     except TactsimError as error:
         console.error(traceback.format_exc() if debug else str(error))

@@ -24,7 +24,7 @@ SEPARATORS = (",", ";", "\t")
 """Of columns, the first that stands in the first line; where it is no comma, a comma is that of a decimal fraction."""
 HIDDEN = "(contents hidden: shown only for table files beside the case or in the working folder)"
 """What a message says instead of the content of another file."""
-NO_TABLE = "(contents hidden: no row of the file holds numbers alone, as every table has one)"
+NO_TABLE = "(contents hidden: no row of the file holds two numbers or more and nothing else, as every table has one)"
 """The same of a file that is no table, wherever it stands."""
 LONGEST_CELL = 80
 """Characters of a cell or a line that a message shows."""

@@ -98,6 +98,8 @@ class Runnable(CaseKind):
     def vary(self, places: Mapping[str, Any]) -> Variation:
         """The experiment with distributions at some places: ``{"thickness": tactsim.uniform("2 mm", "6 mm")}``.
 
+        A place is a key path as in a case file; entries of a list have their numbers: ``"inclusions.0.shape.center.2"``.
+
         Raises
         ------
         CaseError

@@ -226,7 +226,7 @@ def test_a_table_of_text_is_not_quoted_even_beside_the_case(tmp_path: Path) -> N
         with pytest.raises(InvalidQuantity) as caught:
             read(path)
         assert "hunter2" not in str(caught.value)
-        assert "(contents hidden: no row of the file holds numbers alone" in str(caught.value)
+        assert "(contents hidden: no row of the file holds two numbers or more" in str(caught.value)
 
 
 @pytest.mark.parametrize(

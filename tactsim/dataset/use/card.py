@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
@@ -130,8 +131,8 @@ def _figures(path: Path) -> list[str]:
 
 
 def _use(layout: Layout) -> list[str]:
-    readings, labels = (_names(layout, role) for role in ("reading", "label"))
-    chosen = [name for name in ("read_force", "force") if name in readings] or readings[:1]
+    readings, labels = (_widest_first(layout, role) for role in ("reading", "label"))
+    chosen = [name for name in ("read_force", "force") if name in readings] or readings
     inputs, targets = json.dumps(chosen[:1]), json.dumps(labels[:1] or readings[-1:])
     return [
         "## Reading",
@@ -160,8 +161,10 @@ def _use(layout: Layout) -> list[str]:
     ]
 
 
-def _names(layout: Layout, role: str) -> list[str]:
-    return [variable.name for variable in layout.variables if variable.role == role and variable.dtype != "str"]
+def _widest_first(layout: Layout, role: str) -> list[str]:
+    """Variables that are numbers, the largest first: forces of all taxels and a centre, not the error of a mesh and a count."""
+    variables = [variable for variable in layout.variables if variable.role == role and variable.dtype != "str"]
+    return [variable.name for variable in sorted(variables, key=lambda variable: -math.prod(variable.sizes))]
 
 
 def _limits(stated: str) -> list[str]:

@@ -185,3 +185,15 @@ def test_the_form_of_the_figures_is_chosen(monkeypatch: pytest.MonkeyPatch, form
     figures = Path("results/case/figures")
     assert (os.listdir(figures) if figures.exists() else None) == names
     assert drawn == ([] if names is None else [form])
+
+
+def test_an_interruption_before_the_first_step_says_that_nothing_is_written(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def begin(self: Pretence) -> Course:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(Pretence, "begin", begin)
+    assert main(["run", "case.yaml"]) == 130
+    assert capsys.readouterr().err == "error: interrupted: nothing was accepted yet, so results/case is not written\n"
+    assert not Path("results/case").exists()

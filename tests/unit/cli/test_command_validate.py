@@ -10,6 +10,7 @@ import pytest
 from thesis_tables import TABLE, write_tables
 
 from tactsim.cli import main
+from tactsim.validation import StudyRunner
 
 
 def validate(folder: Path, *arguments: str) -> int:
@@ -83,3 +84,16 @@ def test_a_place_that_is_taken_is_refused_before_computing(tmp_path: Path, capsy
     out, err = capsys.readouterr()
     assert not out, "a table that is printed was computed"
     assert "'thesis.docx', which tactsim did not write" in err
+
+
+def test_an_interruption_says_what_is_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def outcomes(self: StudyRunner, *arguments: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(StudyRunner, "outcomes", outcomes)
+    write_tables(tmp_path / "tables")
+    assert validate(tmp_path, "small") == 130
+    assert "interrupted: no report is written; simulations that ended are kept" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()

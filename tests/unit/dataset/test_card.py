@@ -14,7 +14,8 @@ from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
-from tactsim.dataset.use.card import card_text
+from tactsim.dataset.use.card import _use, card_text
+from tactsim.shipped import CASES
 
 
 @pytest.fixture(scope="module")
@@ -52,3 +53,11 @@ def test_the_card_reports_what_the_store_holds(store: tuple[Path, str]) -> None:
         assert str(array.attributes["long_name"]).replace("|", "/") in card
     assert "| done | 24 |" in card
     assert "| force_at_the_moon | " not in card
+
+
+def test_the_code_in_the_card_learns_from_forces_and_not_from_the_mesh() -> None:
+    """A count that is the same in every sample and the error of the contact are no example of what is learned."""
+    alone = ("experiment.readout=null", "sweep.within_specimen=[]", "sweep.samples_per_specimen=1")
+    for name, overrides in (("read_force", ()), ("taxel_force", alone)):
+        use = "\n".join(_use(layout_of(load_sweep(CASES / "sweep_lumps.yaml", overrides))))
+        assert f'inputs=["{name}"], targets=["inclusion_center"]' in use

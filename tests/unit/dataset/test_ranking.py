@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -11,6 +12,7 @@ from made_grasps import SIZE, made_samples, made_store, plain_result, response
 from scipy.stats import norm
 
 from tactsim.cli import main
+from tactsim.dataset.figures.estimator_ranking import AXES, errors_figure
 from tactsim.dataset.ranking.measures import JudgedEstimate, binned, interval, measures, outcome, penalty, ranking, share
 from tactsim.dataset.ranking.report import against_baseline, as_text, record
 from tactsim.dataset.ranking.samples import Truth
@@ -154,3 +156,22 @@ def test_the_command_writes_report_and_figures(
     assert names == {".tactsim.json", "report.json", "report.md", "errors.png", "noise.png", "places.png"}
     assert main([*order, "--learned", str(tmp_path / "none.npz")]) == 5
     assert "No such file" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("contrasts", [(1.69, 1.69), (1.5, 4.0), (1.5, 100.0)])
+def test_labels_of_contrasts_are_not_written_over_each_other(contrasts: tuple[float, float]) -> None:
+    """All lumps may have one contrast, or nearly, around which a logarithmic axis labels every tick between powers of ten."""
+    known = {"value": 0.5, "low": 0.4, "high": 0.6}
+    errors = {"lateral_error": {"median": known}, "depth_error": {"median": known}}
+    measures = {"detection_rate": known, **errors, "coverage": known, "lumps": 2}
+    bins = {label: [{"low": 0.004, "high": 0.006, **measures}] for label in AXES}
+    bins["contrast"] = [{"low": contrasts[0], "high": contrasts[1], **measures}]
+    figure = errors_figure([{"name": "thesis", "bins": bins}])
+    figure.draw_without_rendering()
+    (axis,) = (axis for axis in figure.axes if axis.get_xlabel().startswith("shear modulus"))
+    low, high = axis.get_xlim()
+    ticks = [*axis.xaxis.get_major_ticks(), *axis.xaxis.get_minor_ticks()]
+    shown = [tick.label1 for tick in ticks if tick.label1.get_text() and low <= tick.get_loc() <= high]
+    spans = sorted((text.get_window_extent().x0, text.get_window_extent().x1) for text in shown)
+    assert spans
+    assert all(right <= left for (_, right), (left, _) in pairwise(spans))
