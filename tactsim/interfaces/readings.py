@@ -24,6 +24,12 @@ ROUNDING_NOISE = RESOLUTION / 12**0.5
 """Standard deviation in N of what rounding to the resolution does to a force."""
 
 
+def noise_in_words(noise: float) -> str:
+    """A standard deviation in N, and where it comes from if nobody chose it."""
+    size = format_quantity(noise, "N")
+    return f"{size} (of sensors that resolve {RESOLUTION:g} N, as the thesis's)" if noise == ROUNDING_NOISE else size
+
+
 class TissueResponse(Protocol):
     """How the forces on all taxels change with a ball in the block, for a contrast of one."""
 

@@ -19,11 +19,10 @@ from tactsim.experiments.localization.confusion import ConfusionTable, class_of,
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
 from tactsim.interfaces import Estimator
-from tactsim.interfaces.readings import ROUNDING_NOISE
+from tactsim.interfaces.readings import ROUNDING_NOISE, noise_in_words
 from tactsim.localization.estimators.hypotheses import CLASSES
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.text import markdown_table
-from tactsim.units import format_quantity
 
 if TYPE_CHECKING:
     import xarray
@@ -134,7 +133,7 @@ def as_text(content: Mapping[str, Any], figures: Mapping[str, bytes]) -> str:
     lines = [
         "# Confusion table",
         "",
-        f"{verdict(content)} by `{content['estimator']}`, noise of a reading {format_quantity(content['noise'], 'N')}; "
+        f"{verdict(content)} by `{content['estimator']}`, noise of a reading {noise_in_words(content['noise'])}; "
         f"{content['of_no_class']} samples belong to no class.",
         "",
         *markdown_table(["true, estimated across", *names, "named right"], rows),

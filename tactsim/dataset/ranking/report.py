@@ -7,8 +7,8 @@ from typing import Any
 
 from tactsim.dataset.ranking.measures import DRAWN, INTERVAL, LABELS, Ranked
 from tactsim.dataset.ranking.samples import JudgedSamples
+from tactsim.interfaces.readings import noise_in_words
 from tactsim.outside.text import markdown_table
-from tactsim.units import format_quantity
 
 SCHEMA = "tactsim/ranking/1"
 SCORE = (
@@ -72,7 +72,7 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
         "# Ranking of estimators",
         "",
         f"{len(samples.truths)} grasps, {lumps} with a lump, {len(samples.truths) - lumps} without; readings {samples.source}, "
-        f"noise of a reading {format_quantity(samples.noise, 'N')}. {SCORE}",
+        f"noise of a reading {noise_in_words(samples.noise)}. {SCORE}",
         f"In brackets the {INTERVAL:.0%} interval, of rates by Wilson, of all else by the bootstrap.",
         "",
         *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),

@@ -18,6 +18,7 @@ from tactsim.dataset.ranking.report import against_baseline, as_text, record
 from tactsim.dataset.ranking.samples import Truth
 from tactsim.errors import InputError
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import noise_in_words
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.region import GaussianRegion
@@ -175,3 +176,8 @@ def test_labels_of_contrasts_are_not_written_over_each_other(contrasts: tuple[fl
     spans = sorted((text.get_window_extent().x0, text.get_window_extent().x1) for text in shown)
     assert spans
     assert all(right <= left for (_, right), (left, _) in pairwise(spans))
+
+
+def test_a_noise_that_nobody_chose_says_where_it_comes_from():
+    assert noise_in_words(0.1 / 12**0.5) == "28.868 mN (of sensors that resolve 0.1 N, as the thesis's)"
+    assert noise_in_words(2e-3) == "2 mN"
