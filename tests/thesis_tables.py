@@ -9,6 +9,7 @@ from tactsim.case.loading import load_case
 from tactsim.shipped import CASES
 from tactsim.validation import load_tables
 from tactsim.validation.loading import LoadedTables
+from tactsim.validation.table import Table
 
 GROUPS = ("thesis", "published")
 
@@ -60,14 +61,20 @@ def write_tables(folder: Path, table: str = TABLE, manifest: str = MANIFEST) -> 
 
 
 @cache
-def shipped_tables(group: str) -> LoadedTables:
-    """All tables of a group, read when a test needs them: every process that collects tests would read them at import."""
-    return load_tables(CASES / group)
+def shipped_tables(group: str, *names: str) -> LoadedTables:
+    """The named tables of a group, or all, read when a test needs them: every process that collects tests would read them at
+    import."""
+    return load_tables(CASES / group, names)
 
 
-def assert_cases_valid(folder: Path) -> None:
-    """Every table of a folder is counted, and the cases of its runs can be read and differ from each other."""
-    loaded = load_tables(folder)
+def shipped_table(name: str) -> Table:
+    """A table of the thesis."""
+    return shipped_tables("thesis", name).tables[name]
+
+
+def assert_cases_valid(group: str) -> None:
+    """Every table of a group is counted, and the cases of its runs can be read and differ from each other."""
+    loaded, folder = shipped_tables(group), CASES / group
     assert loaded.faults == ()
     for table in loaded.tables.values():
         for study in table.studies:

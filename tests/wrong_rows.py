@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from tactsim.validation.comparison import compare_row
-from tactsim.validation.endings import READ_BACK, Bound, InsideRange, NotTestable, Outside, Transcribed
+from tactsim.validation.comparison import compare_row, judged_row
+from tactsim.validation.endings import READ_BACK, Bound, InsideRange, Outside, Transcribed
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.table import Row
 
@@ -29,11 +29,12 @@ def wrong(row: Row) -> Row:
     return row.model_copy(update={"expected": text})
 
 
-def left(rows: Iterable[Row], inputs: Inputs) -> list[str]:
-    """Names of those rows that do not end as recorded."""
-    return [row.id for row in rows if not compare_row(row, inputs).held]
+def misjudged(rows: Iterable[Row], inputs: Inputs) -> tuple[list[str], list[str]]:
+    """Names of those rows that do not end as recorded, and of those that do although they are made wrong.
 
-
-def unmoved(rows: Iterable[Row], inputs: Inputs) -> list[str]:
-    """Names of those rows that end as recorded although they are made wrong."""
-    return [row.id for row in rows if not isinstance(row.ends, NotTestable) and compare_row(wrong(row), inputs).held]
+    Each is evaluated once: to make it wrong changes what is expected, not what is computed.
+    """
+    outcomes = [compare_row(row, inputs) for row in rows]
+    left = [outcome.row.id for outcome in outcomes if not outcome.held]
+    evaluated = [outcome for outcome in outcomes if outcome.computed is not None]
+    return left, [outcome.row.id for outcome in evaluated if judged_row(wrong(outcome.row), outcome.computed).held]

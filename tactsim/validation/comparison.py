@@ -81,12 +81,17 @@ def compare(name: str, table: Table, folder: Path, studies: Mapping[str, tuple[R
 
 def compare_row(row: Row, inputs: Inputs) -> RowOutcome:
     """One row, evaluated and compared; its reason as the table writes it."""
-    if isinstance(row.ends, NotTestable) or row.evaluate is None:
-        return RowOutcome(row, None, True, label_of(row.ends), reason_of(row))
     try:
-        computed = row.evaluate(inputs)
+        computed = None if row.evaluate is None else row.evaluate(inputs)
     except TactsimError as error:
         return RowOutcome(row, None, False, "LEFT: cannot be evaluated", str(error))
+    return judged_row(row, computed)
+
+
+def judged_row(row: Row, computed: Computed | None) -> RowOutcome:
+    """One row compared with what was computed for it, None if nothing was."""
+    if isinstance(row.ends, NotTestable) or computed is None:
+        return RowOutcome(row, None, True, label_of(row.ends), reason_of(row))
     value = computed if isinstance(computed, Interval) else float(computed)
     ends = (value.low, value.high) if isinstance(value, Interval) else (value,)
     if not all(math.isfinite(end) for end in ends):

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable
 
 import numpy as np
@@ -17,7 +16,7 @@ from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import PATHS, nominal_stress
 from tactsim.materials.stability_range import PathStability, stability_range
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.plotting.canvas import entitle
+from tactsim.plotting.canvas import encoded, entitle
 from tactsim.units import format_quantity
 
 SHOWN = (0.5, 2.0)
@@ -89,10 +88,8 @@ def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> 
 
 
 def png(figure: Figure) -> bytes:
-    """The figure as PNG, 150 dots per inch."""
-    content = io.BytesIO()
-    figure.savefig(content, format="png", dpi=150)
-    return content.getvalue()
+    """The figure as PNG."""
+    return encoded(figure)
 
 
 def pressure_unit(pressures: Array) -> tuple[str, float]:

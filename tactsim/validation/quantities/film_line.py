@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Annotated, Literal
 
 import numpy as np
 from pydantic import Field
 
-from tactsim.identification.film_joint import changed, identify_film_jointly
+from tactsim.identification.film_joint import JointFilm, changed, identify_film_jointly
 from tactsim.identification.film_line import ACCURATE_FORCES, identify_film
 from tactsim.interfaces import drawing, quantity
 from tactsim.sensors.electronics.calibration import THESIS_LINE
@@ -82,12 +83,18 @@ def joint_film(
     creep_weight : weight of the creep against the line; null keeps the creep as printed
     force : force of the drift
     """
-    joint = identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=creep_weight)
+    joint = _jointly(creep_weight)
     if number == "line_error":
         return float(np.abs(joint.errors).max())
     if number == "creep_change":
         return float(np.abs(joint.creep_changes).max())
     return film_drift(joint.composite, force) if number == "drift" else float(getattr(joint.composite, number))
+
+
+@cache
+def _jointly(creep_weight: float | None) -> JointFilm:
+    """The fit, of which the rows of a table ask for several numbers."""
+    return identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=creep_weight)
 
 
 @drawing

@@ -264,8 +264,13 @@ def test_intervals_are_joined_around_rest():
 
 
 def test_linear_elasticity_is_always_elliptic():
-    assert strongly_elliptic(LinearElastic.example(), np.eye(3)[:, :, None]).all()
-    assert stability_range(LinearElastic.example()).strongly_elliptic
+    material = LinearElastic.example()
+    assert strongly_elliptic(material, np.eye(3)[:, :, None]).all()
+    assert stability_range(material).strongly_elliptic
+    stretches = np.array([[0.2, 1.0, 5.0], [1.0, 1.0, 1.0], [5.0, 1.0, 0.2]])
+    margin = sampled_ellipticity_margin(material, diagonal(stretches))
+    assert (margin >= 0.99 * material.shear_modulus).all()
+    assert (sampled_drucker_margin(material, stretches) > 0).all()
 
 
 @pytest.mark.parametrize("kind", sorted(kind for kind, cls in kinds(Material).items() if issubclass(cls, Hyperelastic)))

@@ -3,22 +3,19 @@
 from __future__ import annotations
 
 import pytest
-from wrong_rows import left, unmoved
+from thesis_tables import shipped_table
+from wrong_rows import misjudged
 
 from tactsim.errors import InputError, UnknownName
 from tactsim.identification.uniaxial import FORMS, fit_uniaxial
 from tactsim.materials.library import named_material
 from tactsim.materials.polynomial import Polynomial
-from tactsim.shipped import CASES
-from tactsim.validation import load_tables
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.brackets import Panel as BarPanel
 from tactsim.validation.quantities.brackets import bracket, lowest_pressure, range_bars, threshold_spread
 from tactsim.validation.quantities.materials import compression_curve, difference_of_fits
 from tactsim.validation.study import RunOutcome
-from tactsim.validation.table import Table
 
-SHIPPED = CASES / "thesis"
 PRESSURES = {"wide": {"default": 40e3, "thin": 20e3}, "corners": {"thin, narrow": 30e3, "thick, narrow": None}}
 BOTH = ("wide", "corners")
 
@@ -32,10 +29,6 @@ def run(name: str, pressure: float | None) -> RunOutcome:
 
 
 INPUTS = Inputs(studies={study: tuple(run(*item) for item in runs.items()) for study, runs in PRESSURES.items()})
-
-
-def table_3_2() -> Table:
-    return load_tables(SHIPPED, ["table_3_2"]).tables["table_3_2"]
 
 
 @pytest.mark.parametrize(("area", "pressure"), [("annulus", 20e3), ("disc", 15e3)])
@@ -75,7 +68,7 @@ def test_the_difference_of_fits_is_that_of_their_largest_and_smallest_stress() -
 
 @pytest.mark.parametrize("elastomer", ["b1a", "icf"])
 def test_the_energies_of_the_runs_are_the_fits_of_these_names(elastomer: str) -> None:
-    (study,) = (study for study in table_3_2().studies if study.name == f"{elastomer}_energies")
+    (study,) = (study for study in shipped_table("table_3_2").studies if study.name == f"{elastomer}_energies")
     forms = [run.id for run in study.runs]
     assert forms == [form for form in FORMS if form.startswith("stable-")]
     for form, run_of_form in zip(forms, study.runs, strict=True):
@@ -88,13 +81,16 @@ def test_the_energies_of_the_runs_are_the_fits_of_these_names(elastomer: str) ->
 
 @pytest.mark.parametrize("elastomer", ["b1a", "icf"])
 def test_what_a_run_says_of_its_energy_is_what_the_table_holds(elastomer: str) -> None:
-    rows = {row.id: row for row in table_3_2().rows}
+    rows = {row.id: row for row in shipped_table("table_3_2").rows}
     spread = named_material(f"{elastomer}_stable").threshold_spread
     assert spread == tuple(rows[f"{elastomer}.spread_{end}"].expected for end in ("low", "high"))
 
 
 def test_the_rows_of_energies_hold_and_none_that_is_made_wrong() -> None:
-    rows = [row for row in table_3_2().rows if row.evaluate and row.evaluate.kind in ("material_error", "difference_of_fits")]
+    rows = [
+        row
+        for row in shipped_table("table_3_2").rows
+        if row.evaluate and row.evaluate.kind in ("material_error", "difference_of_fits")
+    ]
     assert len(rows) == 12
-    assert left(rows, Inputs()) == []
-    assert unmoved(rows, Inputs()) == []
+    assert misjudged(rows, Inputs()) == ([], [])

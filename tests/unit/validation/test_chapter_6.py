@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 import pytest
 from pydantic import ValidationError
-from thesis_tables import MANIFEST, TABLE, write_tables
-from wrong_rows import left, unmoved
+from thesis_tables import MANIFEST, TABLE, shipped_table, shipped_tables, write_tables
+from wrong_rows import misjudged
 
 from tactsim.errors import CaseError, InputError, InvalidQuantity, UnknownName
 from tactsim.shipped import CASES
@@ -21,12 +21,14 @@ from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.grasp import taxel_asymmetry, taxel_change, taxel_contrast, taxel_history, taxel_pulse
 from tactsim.validation.report import CLASSES, Validation, count_rows, table_text
 from tactsim.validation.study import RunOutcome, Study
-from tactsim.validation.table import Row
+from tactsim.validation.table import Row, Table
 
 SHIPPED = CASES / "thesis"
-LOADED = load_tables(SHIPPED, ["section_6_6"])
-TABLE_6_6 = LOADED.tables["section_6_6"]
 CLAIM = "ends: {kind: confirmed, above: 100 N/m, why: a force that is felt}"
+
+
+def table_6_6() -> Table:
+    return shipped_table("section_6_6")
 
 
 def grasp(name: str, upper: np.ndarray, lower: np.ndarray | None = None, *, status: str = "converged") -> RunOutcome:
@@ -55,9 +57,10 @@ def inputs(**runs: np.ndarray) -> Inputs:
 
 
 def test_the_table_is_counted() -> None:
-    assert LOADED.faults == ()
-    used = {name for row in TABLE_6_6.rows if row.evaluate for name in _runs_of(row.evaluate.model_dump())}
-    simulated = {run.id for study in TABLE_6_6.studies for run in study.runs}
+    assert shipped_tables("thesis", "section_6_6").faults == ()
+    table = table_6_6()
+    used = {name for row in table.rows if row.evaluate for name in _runs_of(row.evaluate.model_dump())}
+    simulated = {run.id for study in table.studies for run in study.runs}
     assert simulated == used, "every run serves a row, every row has its runs"
 
 
@@ -125,7 +128,7 @@ def test_a_change_is_read_at_the_closing_asked_for() -> None:
 def test_what_cannot_be_compared_is_refused(runs: str, which: str, bases: str, message: str) -> None:
     with pytest.raises(InvalidQuantity, match=message):
         change(Inputs(), runs, which, bases=tuple(bases))
-    row = next(row for row in TABLE_6_6.rows if getattr(row.evaluate, "kind", "") == "taxel_change")
+    row = next(row for row in table_6_6().rows if getattr(row.evaluate, "kind", "") == "taxel_change")
     call = {"kind": "taxel_change", "study": "s", "runs": tuple(runs), "change": which, "bases": tuple(bases)}
     with pytest.raises(ValidationError, match=message):
         type(row).model_validate({**row.model_dump(), "evaluate": call})
@@ -208,7 +211,7 @@ def test_a_bad_ending_is_reported(tmp_path: Path, ends: str, message: str) -> No
 
 
 def test_a_claim_that_calls_nothing_is_refused() -> None:
-    row = next(row for row in TABLE_6_6.rows if isinstance(row.ends, Confirmed))
+    row = next(row for row in table_6_6().rows if isinstance(row.ends, Confirmed))
     with pytest.raises(ValidationError, match="only what is not testable may lack how it is evaluated"):
         type(row).model_validate({**row.model_dump(by_alias=True), "evaluate": None})
 
@@ -218,12 +221,11 @@ def check(rows: Sequence[Row], outcomes: Callable[[Sequence[Study]], Mapping[str
     needed = {name for row in rows if row.evaluate for name in _runs_of(row.evaluate.model_dump())}
     studies = [
         study.model_copy(update={"runs": kept})
-        for study in TABLE_6_6.studies
+        for study in table_6_6().studies
         if (kept := tuple(run for run in study.runs if run.id in needed))
     ]
     inputs = Inputs(folder=SHIPPED, studies=outcomes(studies))
-    assert left(rows, inputs) == []
-    assert unmoved(rows, inputs) == []
+    assert misjudged(rows, inputs) == ([], [])
 
 
 def computed_here(studies: Sequence[Study]) -> Mapping[str, tuple[RunOutcome, ...]]:
@@ -234,7 +236,7 @@ def computed_here(studies: Sequence[Study]) -> Mapping[str, tuple[RunOutcome, ..
 
 
 def test_the_row_of_one_short_simulation_holds() -> None:
-    check([row for row in TABLE_6_6.rows if row.id.startswith("symmetry.ball")], computed_here)
+    check([row for row in table_6_6().rows if row.id.startswith("symmetry.ball")], computed_here)
 
 
 @pytest.mark.slow
@@ -245,4 +247,4 @@ def test_every_row_holds_and_none_that_is_wrong() -> None:
         ((_, outcomes),) = StudyRunner().outcomes({"section_6_6": studies}, SHIPPED, lambda line: None)
         return outcomes
 
-    check(TABLE_6_6.rows, kept)
+    check(table_6_6().rows, kept)

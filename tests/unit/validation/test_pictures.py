@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from thesis_tables import shipped_tables
 
 from tactsim.errors import InputError, UnknownName
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.results import Result
 from tactsim.results.fields import AXIAL_STRESS
-from tactsim.shipped import CASES
-from tactsim.validation import load_tables
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.grasp import tactile_pictures
@@ -18,7 +17,6 @@ from tactsim.validation.quantities.runs import run_history
 from tactsim.validation.quantities.sections import section_panel
 from tactsim.validation.study import RunOutcome
 
-SHIPPED = CASES / "thesis"
 PICTURES = {
     "section_2_3": ("Fig. 2.9a", "Fig. 2.9b", "Fig. 2.10"),
     "section_3_1_2": ("Fig. 3.5a", "Fig. 3.5b"),
@@ -40,7 +38,7 @@ def outcome(history: dict[str, tuple[float, ...]], status: str = "converged") ->
 
 @pytest.mark.parametrize("table", sorted(PICTURES))
 def test_the_pictures_of_the_thesis_stand_in_their_tables(table: str) -> None:
-    titles = [figure.title for figure in load_tables(SHIPPED, [table]).tables[table].figures.values()]
+    titles = [figure.title for figure in shipped_tables("thesis").tables[table].figures.values()]
     missing = [picture for picture in PICTURES[table] if not any(title.startswith(picture) for title in titles)]
     assert missing == []
 

@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 
 import pytest
-from thesis_tables import assert_cases_valid
-from wrong_rows import left, unmoved
+from thesis_tables import assert_cases_valid, shipped_tables
+from wrong_rows import misjudged
 
 from tactsim.errors import InputError
 from tactsim.shipped import CASES
-from tactsim.validation import load_tables
 from tactsim.validation.execution import simulated
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
@@ -40,26 +39,24 @@ def inputs_of(table: Table, names: tuple[str, ...]) -> Inputs:
 
 
 def test_every_table_is_counted_and_its_cases_are_valid() -> None:
-    assert_cases_valid(PUBLISHED)
+    assert_cases_valid("published")
 
 
 @pytest.mark.parametrize("name", SHORT)
 def test_rows_of_short_studies_hold_and_none_that_is_made_wrong(name: str) -> None:
-    table = load_tables(PUBLISHED, [name]).tables[name]
+    table = shipped_tables("published").tables[name]
     rows = [row for row in table.rows if getattr(row.evaluate, "study", None) in SHORT[name]]
     assert len(rows) >= 4
     inputs = inputs_of(table, SHORT[name])
-    assert left(rows, inputs) == []
-    assert unmoved(rows, inputs) == []
+    assert misjudged(rows, inputs) == ([], [])
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", ["code_aster", "closed_forms", "ansys"])
 def test_every_row_holds_and_none_that_is_made_wrong(name: str) -> None:
-    table = load_tables(PUBLISHED, [name]).tables[name]
+    table = shipped_tables("published").tables[name]
     inputs = inputs_of(table, tuple(study.name for study in table.studies))
-    assert left(table.rows, inputs) == []
-    assert unmoved(table.rows, inputs) == []
+    assert misjudged(table.rows, inputs) == ([], [])
     for drawing in table.figures.values():
         data = drawing(inputs)
         json.dumps(data, allow_nan=False)

@@ -7,18 +7,16 @@ from copy import deepcopy
 from functools import cache
 
 import pytest
-from thesis_tables import assert_cases_valid
-from wrong_rows import left, unmoved
+from thesis_tables import assert_cases_valid, shipped_tables
+from wrong_rows import misjudged
 
 from tactsim.case import loading
 from tactsim.shipped import CASES
-from tactsim.validation import load_tables
 from tactsim.validation.endings import Confirmed, Contradicted
 from tactsim.validation.execution import simulated
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
-from tactsim.validation.loading import MANIFEST, read_model
-from tactsim.validation.table import Manifest, Table
+from tactsim.validation.table import Table
 
 SHIPPED = CASES / "thesis"
 WITHOUT_SIMULATION = (
@@ -44,17 +42,16 @@ SEARCH = "chapter_7"
 
 @pytest.mark.parametrize("name", [*WITHOUT_SIMULATION, *SHORT_SIMULATIONS, pytest.param(SEARCH, marks=pytest.mark.slow)])
 def test_every_row_holds_and_none_that_is_made_wrong(name: str) -> None:
-    table = load_tables(SHIPPED, [name]).tables[name]
+    table = shipped_tables("thesis").tables[name]
     assert bool(table.studies) == (name in (*SHORT_SIMULATIONS, SEARCH))
     inputs = inputs_of(table)
-    assert left(table.rows, inputs) == []
-    assert unmoved(table.rows, inputs) == []
+    assert misjudged(table.rows, inputs) == ([], [])
     for drawing in table.figures.values():
         json.dumps(drawing(inputs), allow_nan=False)
 
 
 def test_bands_and_sections_are_drawn() -> None:
-    table = load_tables(SHIPPED, ["appendix_a"]).tables["appendix_a"]
+    table = shipped_tables("thesis").tables["appendix_a"]
     for drawing in table.figures.values():
         assert validation_figure(drawing(Inputs())).startswith(b"\x89PNG")
 
@@ -62,14 +59,14 @@ def test_bands_and_sections_are_drawn() -> None:
 def test_every_shipped_table_is_counted_and_its_cases_are_valid(monkeypatch: pytest.MonkeyPatch) -> None:
     read = cache(loading._read_file)  # most runs change the case of another
     monkeypatch.setattr(loading, "_read_file", lambda path: deepcopy(read(path)))
-    assert_cases_valid(SHIPPED)
+    assert_cases_valid("thesis")
 
 
 def test_a_step_towards_a_jaw_is_confirmed_where_the_force_rises_there_and_falls_at_the_other() -> None:
     """Section 6.6: what comes nearer to a surface raises the pressure there "as opposed to the other"."""
     steps = [
         row
-        for row in load_tables(SHIPPED, ["section_6_6"]).tables["section_6_6"].rows
+        for row in shipped_tables("thesis").tables["section_6_6"].rows
         if isinstance(row.ends, Confirmed | Contradicted) and str(getattr(row.evaluate, "change", "")).endswith("along")
     ]
     assert len(steps) >= 10
@@ -80,6 +77,6 @@ def test_a_step_towards_a_jaw_is_confirmed_where_the_force_rises_there_and_falls
 
 
 def test_all_221_numbers_have_a_row_and_all_29_errata_words() -> None:
-    manifest = read_model(SHIPPED / MANIFEST, Manifest)
+    manifest = shipped_tables("thesis").manifest
     assert list(manifest.numbers) == [f"T{number:03}" for number in range(1, 222)]
     assert list(manifest.errata) == [f"E{number}" for number in range(1, 30)]

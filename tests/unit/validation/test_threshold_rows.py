@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
+from thesis_tables import shipped_table
 
 from tactsim.errors import InputError
 from tactsim.shipped import CASES
-from tactsim.validation import load_tables
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.film import full_scale_error
 from tactsim.validation.quantities.threshold import equal_force_ratio, threshold_at_level
@@ -40,7 +40,7 @@ def test_full_scale() -> None:
 
 
 def test_the_thickness_limit_of_the_shipped_sensor() -> None:
-    (row,) = (row for row in load_tables(SHIPPED, ["section_3_1_1"]).tables["section_3_1_1"].rows if row.id == "thickness_limit")
+    (row,) = (row for row in shipped_table("section_3_1_1").rows if row.id == "thickness_limit")
     assert row.evaluate is not None
     assert row.evaluate(Inputs(folder=SHIPPED)) == pytest.approx(0.8e-3, rel=1e-6)  # 24 halvings of 1.6 mm
 
