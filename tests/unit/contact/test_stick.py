@@ -17,7 +17,7 @@ GRASP = {
     "contact": {"kind": "stick"},
     "matrix": {"rows": 3, "columns": 3, "pitch": 4.867e-3, "size": 3.894e-3},
     "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 0.5948e-3, "duration": 1.0}]},
-    "mesh": {"kind": "structured", "cells": [6, 6, 4]},
+    "mesh": {"kind": "structured", "cells": [4, 4, 4]},
     "time": {"steps": 1},
 }
 """A random grasp whose free faces roll onto the jaws."""

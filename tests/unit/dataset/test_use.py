@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 from fork_server import forked_python
-from sweeps import sweep_file
+from sweeps import compute_once_here, sweep_file
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
@@ -208,7 +208,8 @@ def test_reading_needs_no_torch_and_no_dask() -> None:
     assert subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout.strip() == "[]"
 
 
-def test_a_sweep_by_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_sweep_by_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    compute_once_here(monkeypatch)
     case, place = str(sweep_file(tmp_path)), str(tmp_path / "s.zarr")
     assert main(["sweep", case, "--out", place, "--samples", "6", "--workers", "1", "--progress"]) == 0
     out, err = capsys.readouterr()
@@ -309,7 +310,7 @@ def test_an_export_goes_on_after_one_that_was_broken_off(kept: Path, tmp_path: P
     assert sorted(path.name for path in tmp_path.iterdir()) == ["flat", "whole.h5"]
 
 
-@pytest.mark.parametrize("name", [pytest.param("flat", marks=pytest.mark.slow), "whole.h5"])
+@pytest.mark.parametrize("name", ["flat", pytest.param("whole.h5", marks=pytest.mark.slow)])
 def test_an_export_to_a_full_disk_is_an_error_and_leaves_nothing(kept: Path, tmp_path: Path, name: str) -> None:
     program = (
         "import resource; resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096)); "

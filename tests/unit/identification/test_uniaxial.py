@@ -145,10 +145,11 @@ def random_curve(seed: int) -> UniaxialCurve:
     return curve_of(material, stretch, 1 + 0.02 * generator.normal(size=50))
 
 
-def test_a_stable_fit_of_any_curve_is_found_or_the_reason_reported():
+@pytest.mark.parametrize("count", [16, pytest.param(40, marks=pytest.mark.slow)])
+def test_a_stable_fit_of_any_curve_is_found_or_the_reason_reported(count):
     """Curves whose stress has the wrong sign are refused before; a strongly softening one has no stable material near it."""
     fitted = refused = 0
-    for seed in range(40):
+    for seed in range(count):
         try:
             curve = random_curve(seed)
         except InvalidQuantity:
@@ -159,8 +160,8 @@ def test_a_stable_fit_of_any_curve_is_found_or_the_reason_reported():
         except ConvergenceError as error:
             assert "strongly elliptic" in str(error)  # noqa: PT017  most curves do not raise
             refused += 1
-    assert fitted > 25
-    assert refused <= 2
+    assert fitted > 0.625 * count
+    assert refused <= 0.05 * count
 
 
 def test_the_stable_fit_is_the_nearest_of_the_stable_ones():

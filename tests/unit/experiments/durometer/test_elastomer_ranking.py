@@ -24,6 +24,7 @@ from tactsim.results.document import document_text
 
 SCALE, RADIUS = DurometerScale(), 1.19e-3
 QUICK = {"mesh": {"finest": 0.2e-3, "growth": 1.0, "adaptive": False}, "specimen": {"thickness": 4e-3, "radius": 7e-3}}
+COARSE = {"finest": 0.5e-3, "growth": 1.5, "adaptive": False}
 SENSOR = SensorTest(**QUICK, recess=0.2e-3, displacement=2e-3)
 
 
@@ -112,9 +113,7 @@ def test_the_atrium():
 @pytest.fixture(scope="module")
 def ranked():
     steps = []
-    made = ElastomerRanking(
-        shapes=STABLE_SHAPES[2:], sensor=SENSOR, durometer={"mesh": {"finest": 0.5e-3, "growth": 1.5, "adaptive": False}}
-    )
+    made = ElastomerRanking(shapes=STABLE_SHAPES[2:], sensor=SENSOR, durometer={"mesh": COARSE})
     return made.run(steps.append), steps
 
 
@@ -154,9 +153,9 @@ def test_the_threshold_scales_for_every_shape(shape):
 
 def test_a_threshold_that_is_not_reached_is_a_failure():
     short = SENSOR.model_copy(update={"displacement": 0.05e-3})
-    result = ElastomerRanking(shapes=STABLE_SHAPES[2:], sensor=short, durometer={"scale": {"travel": 0.1e-3}}).run(
-        lambda step: None
-    )
+    result = ElastomerRanking(
+        shapes=STABLE_SHAPES[2:], sensor=short, durometer={"mesh": COARSE, "scale": {"travel": 0.1e-3}}
+    ).run(lambda step: None)
     assert result.status == "failed"
     assert "neo-Hookean: sensor the threshold was not reached" in result.reason
     assert result.steps == ()

@@ -72,10 +72,11 @@ def test_a_held_displacement_relaxes_by_the_series(held):
     assert times[-1] == 10.0
 
 
+@pytest.mark.slow
 def test_a_ball_on_a_ramp_passes_its_first_touch_and_fades_as_its_growing_contact_should():
     """Reference: the hereditary integral over the elastic force, exact while contact grows (Ting 1966, doi:10.1115/1.3625192).
 
-    Mutant: the elastic force.
+    Mutant: the elastic force. Quick: ``test_withdrawal.py``.
     """
     ball = {"body": Sphere(radius=5e-3), "mesh": MeshSettings(finest=0.15e-3, growth=1.5)}
     ball["loading"] = displaced({"kind": "ramp", "to": 0.1e-3, "duration": 1.0})
@@ -122,9 +123,9 @@ def test_the_touch_is_located_in_time():
     result = thin(loading=loading, recess=0.1e-3, stop="touch").run()
     assert history(result, "tissue_rise")[-1] == pytest.approx(0.1e-3, rel=1e-4)
     assert 0 < result.quantities["time_of_touch"].value < 1.0
-    short = thin(loading=displaced(JUMP), recess=2e-3, stop="touch").run()
+    short = thin(material=ELASTIC, loading=displaced(JUMP), recess=2e-3, stop="touch").run()
     assert (short.status, short.reason) == ("failed", "the tissue did not touch the inner sensor within the history")
-    beyond = thin(loading=loading, recess=0.05e-3).run()
+    beyond = thin(material=ELASTIC, loading=displaced(JUMP | {"to": 0.3e-3}), recess=0.05e-3).run()
     assert any("rose beyond the recess" in warning for warning in beyond.warnings)
 
 

@@ -113,7 +113,8 @@ def test_rates_of_false_missed_and_saturated_trials_are_reported_and_drawn():
     assert grid(saturated, "saturated_rate")[0, 0, 0] == 1
     for result, words in ((false, "before the touch"), (missed, "never trigger"), (saturated, "widen its range")):
         assert any(words in warning for warning in result.warnings)
-        assert all(draw().startswith(b"\x89PNG") for draw in figures_for(result).values())
+        assert set(result.plot()) == {"threshold_errors", "threshold_signals"}
+    assert all(draw().startswith(b"\x89PNG") for draw in figures_for(false).values()), "of no error at all"
 
 
 def test_a_threshold_below_the_resolution_is_reported(usual):
@@ -139,7 +140,7 @@ def test_films_can_conduct_in_place_of_the_line(usual):
     assert sum(parts) == pytest.approx(grid(outcome, "force_error")[0, 0, 0], rel=1e-9)
     assert parts[1] != 0
     assert grid(usual, "film_error")[0, 0, 0] == 0
-    assert all(draw().startswith(b"\x89PNG") for draw in figures_for(outcome).values())
+    assert "film against its line" in text_of(threshold_error_figure(outcome))
 
 
 def test_the_large_sensor_with_and_without_the_small_one_on_it():
