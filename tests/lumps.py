@@ -87,3 +87,14 @@ def same_mirrored(mesh: QuadraticMesh, axis: int) -> bool:
         if not np.array_equal(*(place[np.lexsort(place.T)] for place in places)):
             return False
     return True
+
+
+def wedges(corners: Array, simplices: Array, size: Array) -> int:
+    """How many edges on the four upper and the four lower edges of a block belong to one tetrahedron only."""
+    on_jaw, beside = (
+        np.array([np.abs(corners[:, axis] - place) < 1e-12 for axis in axes for place in (0.0, size[axis])])
+        for axes in ((2,), (0, 1))
+    )
+    pairs = np.sort(simplices[:, [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]]].reshape(-1, 2), axis=1)
+    along = on_jaw[:, pairs].all(axis=2).any(axis=0) & beside[:, pairs].all(axis=2).any(axis=0)
+    return int((np.unique(pairs[along], axis=0, return_counts=True)[1] == 1).sum())

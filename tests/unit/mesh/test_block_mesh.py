@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from lumps import ARTERY, CURVED, LUMP, SIZE, TURNED, interface_nodes, irregular, sides, write_cells
+from lumps import ARTERY, CURVED, LUMP, SIZE, TURNED, interface_nodes, irregular, sides, wedges, write_cells
 from solids import assert_close
 
 from tactsim.errors import ConvergenceError, InputError
@@ -121,6 +121,11 @@ def test_elements_are_sound_and_the_quality_is_the_one_stated(made):
     assert block.quality.minimum > 0.1
     assert block.quality.curvature > 0.15
     assert block.unknowns == TaylorHood(block.mesh.nodes, block.mesh.elements, "solid").size
+
+
+def test_no_edge_of_the_block_belongs_to_one_tetrahedron_alone(made):
+    mesh = made[0].mesh
+    assert wedges(mesh.nodes[: mesh.corner_count], mesh.elements[:, :4], BLOCK) == 0
 
 
 @pytest.mark.slow

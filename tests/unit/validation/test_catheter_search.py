@@ -2,14 +2,31 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import pytest
 
 from tactsim.errors import InputError
 from tactsim.shipped import CASES
 from tactsim.validation.inputs import Inputs
+from tactsim.validation.quantities import catheter
 from tactsim.validation.quantities.catheter import catheter_search, catheter_search_over_sensors
 
 FEW = {"places": 3, "touches": 5}
+
+
+@pytest.fixture(scope="module", autouse=True)
+def _searched_once():
+    """The same places are touched once, whatever number is asked of them."""
+
+    @cache
+    def known(*given, **settings):
+        return list(runs(Inputs(folder=CASES), *given, **settings))
+
+    runs = catheter._runs
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(catheter, "_runs", lambda inputs, *given, **settings: known(*given, **settings))
+        yield
 
 
 def search(number, *, case="catheter_tip.yaml", tissue="annulus", sensors=4, **changes):
