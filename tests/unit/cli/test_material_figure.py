@@ -20,6 +20,8 @@ from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.registry import kinds
 
 SHIPPED = {name: named_material(name).material for name in ("b1a_printed", "icf_stable")}
+QUICK = ("b1a_printed", "linear_elastic", "mooney_rivlin_5")
+"""Of lost ellipticity, of small strain, and of the longest name."""
 EXAMPLES = {kind: cls.example() for kind, cls in kinds(Material).items()}
 
 
@@ -39,7 +41,9 @@ def test_a_material_that_relaxes_is_drawn_at_once_and_says_so() -> None:
     assert "nominal stress at once" in [text.get_text() for text in figure.legends[0].get_texts()]
 
 
-@pytest.mark.parametrize("name", [*SHIPPED, *EXAMPLES])
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in (*SHIPPED, *EXAMPLES)]
+)
 def test_material_figure(name):
     figure = material_figure((SHIPPED | EXAMPLES)[name], name)
     assert [axis.get_title(loc="left") for axis in figure.axes] == list(PATHS)

@@ -104,7 +104,14 @@ def test_reference_and_response_are_needed(response):
         ModelBasedEstimator(radii=(7e-3, 2e-3))
 
 
-@pytest.mark.parametrize("estimator", [ModelBasedEstimator(), HypothesesEstimator()])
+@pytest.mark.parametrize(
+    "estimator",
+    [
+        ModelBasedEstimator(),
+        HypothesesEstimator(classes=("lump", "artery")),
+        pytest.param(HypothesesEstimator(), marks=pytest.mark.slow),
+    ],
+)
 def test_what_a_dead_taxel_of_the_reference_reads_is_not_looked_at(response, estimator):
     given = readings(response, (26e-3, 24e-3, 13e-3), 4e-3, 8.0)
     valid = np.ones((2, 3, 3), bool)

@@ -90,6 +90,7 @@ def test_planes_mirror_the_jaws_too(tilt, shift, copies):
     assert model(shift=shift, width=16e-3, tilt=tilt).problem.copies == copies
 
 
+@pytest.mark.slow
 def test_a_jaw_aside_is_grasped_as_the_whole():
     """In half the steps: so close to its edge Newton finds into longer ones with some orders of MKL's sums only."""
     aside, whole = (model(shift=4e-3, width=16e-3) for _ in range(2))

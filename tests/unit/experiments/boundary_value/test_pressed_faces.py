@@ -99,13 +99,17 @@ def on_coarse_cells(tolerance: float | None) -> Result:
     ).run()
 
 
-def test_a_ball_on_coarse_cells_in_space_needs_no_wider_tolerance_than_the_default(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_ball_on_coarse_cells_in_space_needs_no_wider_tolerance_than_the_default() -> None:
     wide, default = on_coarse_cells(1e-6), on_coarse_cells(None)
     for result in (wide, default):
         assert result.status is Status.CONVERGED, result.reason
     assert default["max_penetration"].value <= 1e-6 * 10e-3
     # What the wider tolerance takes away, by its estimate.
     assert default["force"].value == pytest.approx(wide["force"].value, rel=2 * wide["penetration_force_error"].value)
+
+
+@pytest.mark.slow
+def test_without_its_widening_the_default_tolerance_is_not_reached_there(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(posing, "WIDEST", 0.0)
     failed = on_coarse_cells(None)
     assert failed.status is Status.FAILED

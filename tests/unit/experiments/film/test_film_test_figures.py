@@ -11,12 +11,11 @@ import tactsim as ts
 @pytest.mark.parametrize("case", ["film_lingstat_joint", "film_lingstat_literal"])
 def test_words_stand_within_the_figure_and_beside_the_curves(case: str) -> None:
     figure = ts.load_case(case).run(None).plot("film_test")
-    figure.draw_without_rendering()
+    assert covered_lines(figure) == []  # which lays it out
     within = figure.bbox
     words = figure._supxlabel.get_window_extent()  # type: ignore[attr-defined]
     assert within.x0 <= words.x0
     assert words.x1 <= within.x1
-    assert covered_lines(figure) == []
 
 
 def test_the_forces_are_named_beside_their_creep() -> None:

@@ -155,6 +155,13 @@ def test_pressure_alone_swells_the_block_against_the_jaws(tube_file):
     assert quantities["jaw_force_upper"][2] == pytest.approx(-quantities["jaw_force_lower"][2], rel=1e-4)
     taxels = np.array(quantities["taxel_force_upper"])
     assert taxels[1].mean() > 2 * taxels[[0, 2]].mean(), "the row above the tube"
+
+
+@pytest.mark.slow
+def test_suction_draws_the_block_away_from_the_jaws(tube_file):
+    held = pressed({"kind": "hold", "duration": 0.5})
+    swelling = [{"kind": "ramp", "to": 1000.0, "duration": 0.5}]
+    taxels = np.array(values(with_tube(tube_file, {"kind": "history", "pieces": swelling}, loading=held))["taxel_force_upper"])
     sucking = [{"kind": "jump", "to": -1000.0, "duration": 0.5}]
     sucked = values(with_tube(tube_file, {"kind": "history", "pieces": sucking}, loading=held))
     assert np.mean(sucked["taxel_force_upper"][1]) < 0.3 * taxels[1].mean()
