@@ -106,7 +106,7 @@ def compact(value: float, unit: str, style: str) -> tuple[float, str]:
     value : in ``unit``, which is one of SI
     style : how pint writes a unit: P for people (mm²), C in ASCII but for µ (mm**2)
     """
-    if (unit == "s" and abs(value) >= 1) or (unit == "Pa" and 1e-3 <= abs(value) < 1):
+    if unit in ("", "1", "rad") or (unit == "s" and abs(value) >= 1) or (unit == "Pa" and 1e-3 <= abs(value) < 1):
         return value, unit
     words, inverse = unit.removeprefix("1/").split("/"), unit.startswith("1/")
     if len(words) <= 2 - inverse and PLAIN.keys() >= set(words):

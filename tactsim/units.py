@@ -136,7 +136,7 @@ def conversion(given_unit: str, unit: str) -> float:
 
 def compact_unit(value: float, unit: str) -> str:
     """The unit with the SI prefix in which a value in SI reads well, such as ``kPa``."""
-    if unit in ("", "1", "rad") or not value or not math.isfinite(value):
+    if not value or not math.isfinite(value):
         return unit
     return compact(value, unit, "C")[1].replace("**", "^")
 

@@ -20,20 +20,20 @@ QUADRATURE_DEGREE = 2
 """Four points, as in FElupe and C3D10."""
 
 
-def invariants(displacement: ufl.core.expr.Expr) -> tuple[ufl.core.expr.Expr, ...]:
-    """J, and the invariants I1 and I2 of the isochoric part of C."""
+def isochoric(problem: Problem, displacement: ufl.core.expr.Expr) -> tuple[ufl.core.expr.Expr, list[ufl.core.expr.Expr]]:
+    """J, and the isochoric energies per volume of the tissue and of the ball."""
+    c10, c01, c11, ball_shear = map(float, [*problem["mooney"], problem["ball_shear"]])
     F = ufl.Identity(3) + ufl.grad(displacement)
     J, C = ufl.det(F), F.T * F
     I1 = J ** (-2 / 3) * ufl.tr(C)
-    return J, I1, (I1**2 - J ** (-4 / 3) * ufl.tr(C * C)) / 2
+    I2 = (I1**2 - J ** (-4 / 3) * ufl.tr(C * C)) / 2
+    return J, [c10 * (I1 - 3) + c01 * (I2 - 3) + c11 * (I1 - 3) * (I2 - 3), ball_shear / 2 * (I1 - 3)]
 
 
 def energies(problem: Problem, displacement: fem.Function) -> list[ufl.core.expr.Expr]:
     """Energies per volume of the tissue and of the ball, K/2 (J - 1)^2 for the volume."""
-    c10, c01, c11, bulk, ball_bulk, ball_shear = map(float, [*problem["mooney"], *problem["bulk"], problem["ball_shear"]])
-    J, I1, I2 = invariants(displacement)
-    tissue = c10 * (I1 - 3) + c01 * (I2 - 3) + c11 * (I1 - 3) * (I2 - 3) + bulk / 2 * (J - 1) ** 2
-    return [tissue, ball_shear / 2 * (I1 - 3) + ball_bulk / 2 * (J - 1) ** 2]
+    J, changing_shape = isochoric(problem, displacement)
+    return [W + float(K) / 2 * (J - 1) ** 2 for W, K in zip(changing_shape, problem["bulk"], strict=True)]
 
 
 def domain_of(problem: Problem) -> tuple[mesh.Mesh, ufl.Measure]:

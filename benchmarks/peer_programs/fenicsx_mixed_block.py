@@ -9,17 +9,15 @@ import numpy as np
 import ufl
 from clamped_block import Problem
 from dolfinx import fem
-from fenicsx_block import Assembled, domain_of, invariants
+from fenicsx_block import Assembled, domain_of, isochoric
 from mixed_block import run
 from petsc4py import PETSc
 
 
 def energies(problem: Problem, displacement: ufl.core.expr.Expr, pressure: ufl.core.expr.Expr) -> list[ufl.core.expr.Expr]:
     """Saddle-point energies per volume of the tissue and of the ball."""
-    c10, c01, c11, ball_shear = map(float, [*problem["mooney"], problem["ball_shear"]])
-    J, I1, I2 = invariants(displacement)
-    isochoric = [c10 * (I1 - 3) + c01 * (I2 - 3) + c11 * (I1 - 3) * (I2 - 3), ball_shear / 2 * (I1 - 3)]
-    return [W + pressure * (J - 1) - pressure**2 / (2 * float(K)) for W, K in zip(isochoric, problem["bulk"], strict=True)]
+    J, changing_shape = isochoric(problem, displacement)
+    return [W + pressure * (J - 1) - pressure**2 / (2 * float(K)) for W, K in zip(changing_shape, problem["bulk"], strict=True)]
 
 
 class MixedBlock(Assembled):

@@ -210,7 +210,7 @@ class SingleFigure(ResultFigures):
 
 def scale_of(largest: float, unit: str) -> tuple[float, str]:
     """Factor and prefixed unit in which a size in SI reads well, like ``(1e3, "mm")``; what is next to nothing has no prefix."""
-    if unit in ("", "1", "rad") or not largest >= NEXT_TO_NOTHING:
+    if not largest >= NEXT_TO_NOTHING:
         return 1.0, unit
     shown, prefixed = compact(largest, unit, "P")
     return float(f"1e{round(math.log10(shown / largest))}"), prefixed

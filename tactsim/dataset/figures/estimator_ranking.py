@@ -154,10 +154,11 @@ def _draw_bins(axis: Axes, estimators: Sequence[Mapping[str, Any]], label: str, 
     if label == "contrast":
         ends = [part[end] for one in estimators for part in one["bins"][label] for end in ("low", "high")]
         axis.set_xscale("log")
-        axis.set_xlim(min(ends, default=1.0) / 1.2, max(ends, default=10.0) * 1.2)
+        low, high = min(ends, default=1.0), max(ends, default=10.0)
+        axis.set_xlim(low / 1.2, high * 1.2)
         axis.xaxis.set_major_formatter("{x:g}")
-        if max(ends, default=10.0) < 10 * min(ends, default=1.0):  # ticks between powers of ten would be written over each other
-            axis.set_xticks(sorted({float(f"{end:.2g}") for end in (min(ends), max(ends))}))
+        if high < 10 * low:  # ticks between powers of ten would be written over each other
+            axis.set_xticks(sorted({float(f"{end:.2g}") for end in (low, high)}))
         axis.xaxis.set_minor_formatter("")
     for style, estimator in zip(_styles(estimators), estimators, strict=True):
         bins = estimator["bins"][label]

@@ -61,6 +61,17 @@ class Components(FrozenModel):
             raise ValueError(f"no component is given; allowed: {', '.join(axes)}")
         return {axes.index(name): value for name, value in given.items()}
 
+    def vector(self, axes: tuple[str, ...]) -> list[float]:
+        """All components in SI, zero where none is given.
+
+        Raises
+        ------
+        ValueError
+            As ``along`` does.
+        """
+        given = self.along(axes)
+        return [given.get(axis, 0.0) for axis in range(len(axes))]
+
 
 class Displacement(Components):
     """Components of a displacement."""

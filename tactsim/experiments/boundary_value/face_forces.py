@@ -7,6 +7,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.experiments.boundary_value.conditions import FaceCondition
 from tactsim.experiments.boundary_value.posing import PosedProblem
 from tactsim.mechanics.paths.history_path import TimedState
 
@@ -39,7 +40,8 @@ class FaceForces:
         own = [*zip(self._posed.loads, loads, strict=True), *zip(self._posed.contacts, contacts, strict=True)]
         reaction = model.internal_forces(now.unknowns, state.relaxation) - sum(force for _, force in own)
         return {
-            face: share * reaction + sum(force for condition, force in own if getattr(condition, "face", None) == face)
+            face: share * reaction
+            + sum(force for condition, force in own if isinstance(condition, FaceCondition) and condition.face == face)
             for face, share in self._shares.items()
         }
 

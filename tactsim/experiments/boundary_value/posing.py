@@ -108,10 +108,7 @@ class _Posing:
         """A load, and its size at the factor one."""
         entries = len(self._body.pattern.indices)
         if isinstance(condition, BodyForceCondition):
-            per_volume = np.zeros(self._dim)
-            for axis, value in condition.along(self._parts.axes).items():
-                per_volume[axis] = value
-            return DeadLoad(weight_of(self._body, per_volume), entries), 1.0
+            return DeadLoad(weight_of(self._body, np.array(condition.vector(self._parts.axes))), entries), 1.0
         facets = self._parts.facets(condition)
         if isinstance(condition, PressureCondition) and condition.follows:
             return FollowerPressure(self._body.space, facets, self._body.pattern, condition.pressure), condition.pressure
@@ -120,9 +117,7 @@ class _Posing:
             traction = -condition.pressure * points.normals
         else:
             area = float(points.weights.sum()) if isinstance(condition, ForceCondition) else 1.0
-            traction = np.zeros_like(points.normals)
-            for axis, value in condition.along(self._parts.axes).items():
-                traction[axis] = value / area
+            traction = np.zeros_like(points.normals) + np.array(condition.vector(self._parts.axes))[:, None] / area
         return DeadLoad(self._surface(points).force(traction), entries), 1.0
 
     def _contact(self, condition: ContactCondition) -> MovedContact:
@@ -130,11 +125,8 @@ class _Posing:
         touch = touch_of(self._parts, condition)
         pair = ContactPair(touch.body, condition.law)
         contact = PosedContact.apart(self._surface(touch.points), touch.reference, pair, touch.place)
-        displacements = np.zeros((len(condition.moving), self._dim))
-        for displacement, motion in zip(displacements, condition.moving, strict=True):
-            for axis, value in motion.along(self._parts.axes).items():
-                displacement[axis] = value
-        return MovedContact(contact, displacements)
+        displacements = [motion.vector(self._parts.axes) for motion in condition.moving]
+        return MovedContact(contact, np.reshape(displacements, (-1, self._dim)))
 
     def _surface(self, points: SurfacePoints) -> SurfaceAssembly:
         return SurfaceAssembly(points, self._body.pattern, self._dim)
