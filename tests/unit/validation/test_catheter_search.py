@@ -18,12 +18,12 @@ FEW = {"places": 3, "touches": 5}
 @pytest.fixture(scope="module", autouse=True)
 def _searched_once():
     """The same places are touched once, whatever number is asked of them."""
+    runs = catheter._runs
 
     @cache
     def known(*given, **settings):
         return list(runs(Inputs(folder=CASES), *given, **settings))
 
-    runs = catheter._runs
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(catheter, "_runs", lambda inputs, *given, **settings: known(*given, **settings))
         yield
