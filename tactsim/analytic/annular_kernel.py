@@ -96,11 +96,26 @@ class LogarithmicRing:
 
         .. math:: \int_b^1 p(s)\, s \int_0^\infty (M(x) - 1)\, J_0(x r / h)\, J_0(x s / h)\, \frac{dx}{h}\, ds
         """
-        slenderness = 1 / layer.thickness
-        x, weights = wave_quadrature(slenderness * max(1.0, float(r.max(initial=0))))
-        amplitudes = -slenderness * weights * layer.deficit(x)
-        waves = amplitudes[:, None] * scipy.special.j0(slenderness * np.outer(x, self.radii)) * (self.weight * self.radii)
-        return scipy.special.j0(slenderness * np.outer(r, x)) @ waves
+        x, amplitudes = _waves(layer, max(1.0, float(r.max(initial=0))))
+        return _modes(layer, r, x) @ (amplitudes[:, None] * _modes(layer, self.radii, x).T) * (self.weight * self.radii)
+
+    def own_layer_influence(self, layer: Layer) -> tuple[np.ndarray, np.ndarray]:
+        """The same at the points, shape (terms, terms), and on the axis, shape (terms,), from waves that are worked out once."""
+        x, amplitudes = _waves(layer, 1.0)
+        modes, loads = _modes(layer, self.radii, x), self.weight * self.radii
+        roots = modes * np.sqrt(-amplitudes)  # 1 - M > 0; a matrix by its own transpose is half the work
+        return -(roots @ roots.T) * loads, modes @ amplitudes * loads
+
+
+def _waves(layer: Layer, farthest: float) -> tuple[np.ndarray, np.ndarray]:
+    """Wave numbers times thickness that resolve the product of two waves out to ``farthest``, and their amplitudes."""
+    x, weights = wave_quadrature(farthest / layer.thickness)
+    return x, -weights * layer.deficit(x) / layer.thickness
+
+
+def _modes(layer: Layer, r: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Waves at radii (n,) of wave numbers times thickness (m,): shape (n, m)."""
+    return scipy.special.j0(np.outer(r, x) / layer.thickness)
 
 
 def split_kernel(delta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -24,6 +24,8 @@ TERMS = (16, 32, 64, 128, 256, 512, 1024, 2048)
 """Numbers of points tried in turn."""
 DECAYED = 50.0
 """Thicknesses beside the punch after which a layer is at rest: its modes decay at least like exp(-0.739 r / h)."""
+AXIS = 1e-12
+"""Radius over that of the hole that stands for the axis of the half-space, where the logarithm of the radius has no value."""
 RADII = 33
 """Radii of the hole among which its highest place is looked for first."""
 CHUNK = 1000
@@ -148,8 +150,18 @@ def standing_in(radius_ratio: float) -> float:
 
 def influence(ring: LogarithmicRing, layer: Layer, r: np.ndarray) -> np.ndarray:
     """Displacement u / eps at ``r`` over a, shape (n,), per density at the points of the ring: shape (n, terms)."""
-    matrix = ring.half_space_influence(np.maximum(r, 1e-12 * ring.hole))
+    matrix = ring.half_space_influence(np.maximum(r, AXIS * ring.hole))
     return matrix if np.isinf(layer.thickness) else matrix + ring.layer_influence(layer, r)
+
+
+def own_influence(ring: LogarithmicRing, layer: Layer) -> tuple[np.ndarray, np.ndarray]:
+    """`influence` at the points themselves, shape (terms, terms), and on the axis, shape (terms,)."""
+    own = ring.half_space_influence(ring.radii)
+    axis = ring.half_space_influence(np.array([AXIS * ring.hole]))[0]
+    if np.isinf(layer.thickness):
+        return own, axis
+    added, added_on_axis = ring.own_layer_influence(layer)
+    return own + added, axis + added_on_axis
 
 
 def solve_annular_punch(
@@ -194,9 +206,10 @@ def solve_annular_punch(
     before: tuple[float, float] | None = None
     for terms in TERMS:
         ring = LogarithmicRing(standing_in(radius_ratio), terms)
-        density = np.linalg.solve(influence(ring, layer, ring.radii), np.ones(terms))
+        matrix, on_axis = own_influence(ring, layer)
+        density = np.linalg.solve(matrix, np.ones(terms))
         force_factor = np.pi / 2 * ring.weight * float(ring.radii @ density)
-        axis = float((influence(ring, layer, np.zeros(1)) @ density)[0])
+        axis = float(on_axis @ density)
         if before is not None:
             changes.append(max(abs(force_factor / before[0] - 1), abs(axis - before[1]) / max(1.0, abs(axis))))
             if changes[-1] <= tolerance:
