@@ -1,4 +1,4 @@
-"""Columns that buckle: the load from which on the straight equilibrium is unstable is Euler's, the bent one is the elastica."""
+"""Columns and rings that buckle: unstable from the load of Euler or Levy on; the column then bends as the elastica."""
 
 from __future__ import annotations
 
@@ -67,3 +67,16 @@ def test_a_column_between_clamps_that_come_closer(share, unstable, one_thread):
     shortening = share * euler(plane * WIDTH**3 / 12, HEIGHT / 2) / (plane * WIDTH) * HEIGHT
     assert bool(warned(column("plane_strain", kind="displacement", x=0.0, y=-shortening))) is unstable
     assert not warned(column("plane_strain", kind="displacement", x=0.0, y=shortening)), "in tension it stays straight"
+
+
+@pytest.mark.parametrize(("share", "unstable"), [(1 - ABOUT_EULER, False), (1 + ABOUT_EULER, True)])
+def test_a_ring_under_outer_pressure_is_flattened(share, unstable, one_thread):
+    """Of a pressure p that follows, 3 E I / r^3 for each length of the middle line (Levy 1884); the thickness is a twentieth."""
+    middle, outer = 20e-3, 20.5e-3
+    thickness = 2 * (outer - middle)
+    pressure = share * 3 * (6 * C10 / 0.75 * thickness**3 / 12) / middle**3 * middle / outer
+    ring = {"kind": "cylinder", "inner_radius": outer - thickness, "radial": [{"length": thickness, "cells": 2}], "around": 30}
+    load = {"kind": "pressure", "face": "outer", "pressure": pressure}
+    problem = {"dimension": "plane_strain", "geometry": ring, "material": {"kind": "neo_hookean", "c10": C10}}
+    result = BoundaryValueProblem.model_validate(problem | {"conditions": [load], "asked": {"volume": {"kind": "volume"}}}).run()
+    assert bool(warned(result)) is unstable
