@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 from scipy.special import ellipk
+from small_problems import CUBE, PLANES, asked, result_of
 
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 
@@ -29,8 +30,8 @@ def column(dimension, c10=C10, **conditions):
     top = {"face": "top", **conditions}
     held = {"kind": "clamped", "face": "bottom"}
     corner = (0.0, HEIGHT) if dimension == "plane_strain" else (0.0, 0.0, HEIGHT)
-    asked = {"aside": {"kind": "displacement", "at": corner, "component": "x"}}
-    return BoundaryValueProblem.model_validate(problem | {"conditions": [held, top], "asked": asked}).run()
+    aside = {"aside": {"kind": "displacement", "at": corner, "component": "x"}}
+    return BoundaryValueProblem.model_validate(problem | {"conditions": [held, top], "asked": aside}).run()
 
 
 def warned(result):
@@ -78,5 +79,16 @@ def test_a_ring_under_outer_pressure_is_flattened(share, unstable, one_thread):
     ring = {"kind": "cylinder", "inner_radius": outer - thickness, "radial": [{"length": thickness, "cells": 2}], "around": 30}
     load = {"kind": "pressure", "face": "outer", "pressure": pressure}
     problem = {"dimension": "plane_strain", "geometry": ring, "material": {"kind": "neo_hookean", "c10": C10}}
-    result = BoundaryValueProblem.model_validate(problem | {"conditions": [load], "asked": {"volume": {"kind": "volume"}}}).run()
+    result = BoundaryValueProblem.model_validate(problem | {"conditions": [load], "asked": asked("volume")}).run()
     assert bool(warned(result)) is unstable
+
+
+@pytest.mark.parametrize(("share", "unstable"), [(0.999, False), (1.001, True)])
+def test_a_cube_pulled_alike_on_all_sides(share, unstable, one_thread):
+    """Rivlin's cube of neo-Hookean material, pulled by dead tractions T, is unstable from T = 2 G on (Rivlin 1974): exact."""
+    pulled = [
+        {"kind": "traction", "face": face, axis: share * 4 * C10}
+        for face, axis in zip(("right", "back", "top"), "xyz", strict=True)
+    ]
+    problem = {"geometry": CUBE, "material": {"kind": "neo_hookean", "c10": C10}, "conditions": [*PLANES, *pulled]}
+    assert bool(warned(result_of(**problem, asked=asked("volume")))) is unstable
