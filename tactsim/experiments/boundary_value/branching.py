@@ -27,7 +27,7 @@ def lowering_motions(model: LoadedBody, state: TimedState) -> int:
     has_energy = not state.contact.contacts and state.relaxation is None
     if not has_energy or model.body.linear.all() or space.size > LARGEST or not has_pardiso():
         return 0
-    matrix = model.tangent(state.contact.unknowns, state.loads)
+    matrix = model.tangent(state.contact, state.loads)
     if abs(matrix - matrix.T).max() > ROUND_OFF * np.abs(matrix.data).max():
         return 0
     solver = Inertia()
