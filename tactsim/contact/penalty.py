@@ -62,6 +62,10 @@ class Regularisation:
         """Penetration in m over the tolerance; at most one if it is small enough."""
         return penetration / self.tolerance
 
+    def excess_in_words(self, penetration: float, elastic_slip: float) -> str:
+        """Which of the two in m is beyond what is allowed, and by how much."""
+        return f"the penetration {penetration:.2e} m stays above the tolerance {self.tolerance:.2e} m"
+
     def seen(self, pressure: float) -> Self:
         """Adapted to the largest contact pressure in Pa of a solution; the penalty never decreases."""
         return replace(self, largest_pressure=max(pressure, self.largest_pressure))
@@ -102,3 +106,12 @@ class Augmentation(Regularisation):
     def excess(self, penetration: float, elastic_slip: float) -> float:
         """Penetration and elastic slip in m over the largest allowed; at most one if both are small enough."""
         return max(penetration / self.tolerance, elastic_slip / (SLIP_SHARE * self.tolerance))
+
+    def excess_in_words(self, penetration: float, elastic_slip: float) -> str:
+        """The larger one of the two in m over what is allowed of it."""
+        allowed = SLIP_SHARE * self.tolerance
+        if elastic_slip / allowed < penetration / self.tolerance:
+            return super().excess_in_words(penetration, elastic_slip)
+        return (
+            f"the elastic slip {elastic_slip:.2e} m stays above {allowed:.2e} m, {SLIP_SHARE:g} times the penetration tolerance"
+        )

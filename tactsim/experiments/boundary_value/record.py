@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tactsim.errors import ConvergenceError
+from tactsim.experiments.boundary_value.branching import lowering_motions, unstable_in_words
 from tactsim.experiments.boundary_value.conditions import SIDES
 from tactsim.experiments.boundary_value.limit_load import LimitLoad
 from tactsim.experiments.boundary_value.posing import PosedProblem, posed
@@ -203,10 +204,12 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """Warnings about volumes and ellipticity, and about rigid bodies that never touched."""
+        """Warnings about volumes and ellipticity, about an unstable end, and about rigid bodies that never touched."""
         together = zip(self.problem.contacts, self._touched, strict=True)
+        unstable = unstable_in_words(lowering_motions(*self._kept["last"]))
         return [
             *super().warnings(),
+            *([unstable] if unstable else []),
             *(
                 f"rigid body {number} ({one.body.kind} from the {one.side}) never touches the body at {one.face}, its force is "
                 "zero: do its displacement and side lead it there?"

@@ -15,7 +15,6 @@ from tactsim.experiments.boundary_value.conditions import (
     SIDES,
     Amplitude,
     AnyCondition,
-    BodyForceCondition,
     Components,
     Condition,
     ContactCondition,
@@ -25,8 +24,8 @@ from tactsim.experiments.boundary_value.geometry import AXES, AnyGeometry, Dimen
 from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
+from tactsim.experiments.boundary_value.symmetry import check_contact, check_load, check_material
 from tactsim.materials.any_material import AnyMaterial
-from tactsim.materials.mirrored import check_in_plane, law_mirrors
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
 from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
@@ -141,10 +140,9 @@ class BoundaryValueSetup(FrozenModel):
         """Check that the body has what the case names, with its mesh."""
         parts = Parts.of(self.geometry, self.dimension)
         held = motions_of(parts, self.conditions)
-        self._check_mirrors(parts)
+        check_material(parts, self.material)
         for number, condition in enumerate(self.conditions):
-            if isinstance(condition, BodyForceCondition):
-                _blaming(f"conditions.{number}.", _check_body_force, condition, parts)
+            _blaming(f"conditions.{number}.", check_load, parts, condition)
         for number, contact in enumerate(self.contacts):
             _blaming(f"contacts.{number}.", _check_touch, parts, contact)
         for name, one in self.asked.items():
@@ -161,20 +159,6 @@ class BoundaryValueSetup(FrozenModel):
                 f"conditions: nothing holds the body against {in_words(free)}; prescribe such a displacement of a face or a point"
             )
         self._check_freedom(parts, held)
-
-    def _check_mirrors(self, parts: Parts) -> None:
-        """Check that the planes of symmetry, and that of a section, mirror the material."""
-        if self.dimension != "3d":
-            try:
-                check_in_plane(self.material)
-            except InputError as error:
-                raise ValueError(f"material: {error}") from None
-        for name, axis in parts.domain.mirrors.items():
-            if not law_mirrors(self.material, axis):
-                raise ValueError(
-                    f"material: {self.material.kind} is not its own mirror image across {name}, where the part computed ends; "
-                    "take a geometry without this plane, such as part: whole, or turn the axes of the material"
-                )
 
     def _check_freedom(self, parts: Parts, held: Sequence[Held]) -> None:
         """Check that an incompressible body may give way somewhere."""
@@ -239,22 +223,11 @@ def _check_turn(condition: RotationCondition, dimension: str) -> None:
         raise ValueError(".axial: no face of a body in plane_strain moves along z")
 
 
-def _check_body_force(condition: BodyForceCondition, parts: Parts) -> None:
-    """Check that the part that is not computed bears the mirror image of the force."""
-    along = condition.along(parts.axes)
-    for face, axis in parts.domain.mirrors.items():
-        if along.get(axis):
-            raise ValueError(
-                f"{parts.axes[axis]}: {face} is a plane of symmetry, and such a force is not its own mirror image there; "
-                "leave it out, or take a geometry without this plane"
-            )
-
-
 def _check_touch(parts: Parts, contact: ContactCondition) -> None:
-    """Check that a rigid body meets its face."""
+    """Check that a rigid body meets its face, and the planes of symmetry as one with its mirror images."""
     from tactsim.experiments.boundary_value.touch import touch_of  # not for a wrong word in a case
 
-    touch_of(parts, contact)
+    check_contact(parts, contact, touch_of(parts, contact).distance)
 
 
 def _blaming(key: str, check: Callable[..., object], *values: object) -> None:

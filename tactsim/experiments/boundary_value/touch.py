@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.contact.mirrored import body_mirrors
 from tactsim.contact.turned import Turned
 from tactsim.experiments.boundary_value.conditions import SIDES, ContactCondition
 from tactsim.experiments.boundary_value.parts import Parts
@@ -27,6 +26,10 @@ class Touch:
     points: SurfacePoints
     reference: Array
     place: Array
+
+    def distance(self, places: Array) -> Array:
+        """Signed distance (n,) in m of the body, before it moves on, from places (d, n) in m."""
+        return self.body.signed_distance(places - self.place[:, None])[0]
 
 
 def touch_of(parts: Parts, condition: ContactCondition) -> Touch:
@@ -48,10 +51,4 @@ def touch_of(parts: Parts, condition: ContactCondition) -> Touch:
     place = first_touch(body, np.hstack([nodes, reference]), begin=begin, direction=-away, size=parts.size)
     if place is None:
         raise ValueError(f"at: the {condition.body.kind} that comes from the {condition.side} does not meet {condition.face}")
-    for name, normal in parts.domain.mirrors.items():
-        if parts.dimension == "3d" and origin[normal] == 0.0 and not body_mirrors(body, normal, parts.size):
-            raise ValueError(
-                f"body: {condition.body.kind} is not its own mirror image across {name}, where the part computed ends; take a "
-                "geometry without this plane, such as part: whole"
-            )
     return Touch(body, points, reference, place)

@@ -101,7 +101,7 @@ class Indentation3D(DisplacedSetup, Experiment):
     def _mirrors(self, axis: int) -> bool:
         """Whether the body, upright, and all materials are their own mirror images along an axis."""
         laws = all(law_mirrors(material, axis) for material in self.specimen.materials)
-        return laws and body_mirrors(self.body, axis, self.specimen.radius)
+        return laws and body_mirrors(lambda places: self.body.signed_distance(places)[0], axis, self.specimen.radius)
 
     def posed(self) -> Posed:
         """The body as it leans, off the axis."""

@@ -192,7 +192,8 @@ def _equilibrium(
         results = [contact.at(displacement) for contact, displacement in zip(contacts, displacements, strict=True)]
         deepest = max(float(-result.gap.min()) for result in results)
         slips = [r.elastic_slip(contact.state, contact.pair) for r, contact in zip(results, contacts, strict=True)]
-        last, excess = excess, regularisation.excess(deepest, max(float(slip.max()) for slip in slips))
+        slip = max(float(one.max()) for one in slips)
+        last, excess = excess, regularisation.excess(deepest, slip)
         overshot = overshot or excess > last
         regularisation = regularisation.seen(max(float(result.pressure.max()) for result in results))
         if excess <= 1 and not coarse:
@@ -207,8 +208,8 @@ def _equilibrium(
             share = AVERAGED if overshot and attempt >= UNAVERAGED else 1.0
             before = tuple(augmented(old, result, share) for old, result in zip(before, results, strict=True))
         guess = solved.unknowns
-    limit = regularisation.tolerance
-    raise ConvergenceError(f"the penetration {deepest:.2e} m stays above the tolerance {limit:.2e} m", solutions=iterations)
+    almost = f"the forces of contact are still those of a coarse solution after {AUGMENTATIONS} augmentations"
+    raise ConvergenceError(regularisation.excess_in_words(deepest, slip) if excess > 1 else almost, solutions=iterations)
 
 
 def _solved(

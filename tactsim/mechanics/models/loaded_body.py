@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
+from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
@@ -161,6 +162,11 @@ class LoadedBody:
         """Internal nodal forces (n, d) in N: what acts on each node from outside."""
         return self._nodal(self.body.with_relaxation(relaxation).residual(unknowns))
 
+    def tangent(self, state: ContactEquilibrium, factors: Sequence[float]) -> csr_matrix:
+        """Tangent of body and loads in N/m, of a body that does not relax; prescribed unknowns have one on the diagonal."""
+        forces = self._forces(self.conditions.split(factors)[1])
+        return self.body.pattern.matrix(self.problem.constraints.apply(self._stiffness(self.body, state, forces)))
+
     def load_forces(self, unknowns: Array, factors: Sequence[float]) -> list[Array]:
         """Nodal forces (n, d) in N of each load, of all the factors of the conditions."""
         u, _ = self.space.split(unknowns)
@@ -179,6 +185,14 @@ class LoadedBody:
         together = zip(self.conditions.loads, self.conditions.unit_loads, factors, strict=True)
         return [load.at(factor * unit) for load, unit, factor in together]
 
+    def _stiffness(self, body: Body, state: ContactEquilibrium, loads: Sequence[FollowerLoad]) -> Array:
+        """Entries of the tangent of a body and of loads in a state."""
+        data = body.tangent(state.unknowns, state.kinematics)
+        u, _ = self.space.split(state.unknowns)
+        for load in loads:
+            data += load.stiffness(u)
+        return data
+
     def _lifted(
         self,
         now: ContactEquilibrium,
@@ -194,10 +208,7 @@ class LoadedBody:
             return unknowns
         if np.abs(missing).max() > ACCURACY * np.abs(prescribed).max():
             body = self.body.with_relaxation(relaxation)
-            data = body.tangent(now.unknowns, now.kinematics)
-            u, _ = self.space.split(now.unknowns)
-            for load in loads:
-                data += load.stiffness(u)
+            data = self._stiffness(body, now, loads)
             moved = np.zeros(self.space.size)
             moved[fixed] = missing
             right = -(body.pattern.matrix(data) @ moved)

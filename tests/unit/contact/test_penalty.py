@@ -1,0 +1,26 @@
+"""What a contact that is not as stiff as its penetration tolerance asks says of itself."""
+
+from __future__ import annotations
+
+import pytest
+
+from tactsim.contact.penalty import SLIP_SHARE, Augmentation
+
+TOLERANCE = 1e-7
+
+
+@pytest.mark.parametrize(
+    ("penetration", "elastic_slip", "words"),
+    [
+        (2 * TOLERANCE, 0.0, "the penetration 2.00e-07 m stays above the tolerance 1.00e-07 m"),
+        (
+            TOLERANCE / 2,
+            3 * SLIP_SHARE * TOLERANCE,
+            "the elastic slip 3.00e-06 m stays above 1.00e-06 m, 10 times the penetration tolerance",
+        ),
+    ],
+)
+def test_the_one_that_is_too_large_is_named(penetration, elastic_slip, words):
+    regularisation = Augmentation(TOLERANCE, softest=1e3, switch_length=1e-3, softness=1e-5)
+    assert regularisation.excess(penetration, elastic_slip) > 1
+    assert regularisation.excess_in_words(penetration, elastic_slip) == words

@@ -1,0 +1,94 @@
+"""Columns and rings that buckle: unstable from the load of Euler or Levy on; the column then bends as the elastica."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+from scipy.special import ellipk
+from small_problems import CUBE, PLANES, asked, result_of
+
+from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
+
+HEIGHT, WIDTH, C10 = 60e-3, 3e-3, 20e3
+"""Twenty times as tall as wide."""
+UNSTABLE = "the equilibrium at the end is unstable"
+ABOUT_EULER = 0.03
+"""How far Euler's load may be off: twenty times as tall a column shortens by 0.8 % before it buckles between clamps, which
+lowers and raises the load by about that, and shear lowers it by four times that over 1.2."""
+
+
+def euler(stiffness, length):
+    """Buckling force pi^2 E I / l^2 of the column with the bending stiffness E I and the effective length l (Euler 1744)."""
+    return np.pi**2 * stiffness / length**2
+
+
+def column(dimension, c10=C10, **conditions):
+    across, along = ([{"length": length, "cells": cells}] for length, cells in ((WIDTH, 2), (HEIGHT, 24)))
+    section = {"x": across, "y": along} if dimension == "plane_strain" else {"x": across, "y": across, "z": along}
+    problem = {"dimension": dimension, "geometry": {"kind": "block", **section}, "material": {"kind": "neo_hookean", "c10": c10}}
+    top = {"face": "top", **conditions}
+    held = {"kind": "clamped", "face": "bottom"}
+    corner = (0.0, HEIGHT) if dimension == "plane_strain" else (0.0, 0.0, HEIGHT)
+    aside = {"aside": {"kind": "displacement", "at": corner, "component": "x"}}
+    return BoundaryValueProblem.model_validate(problem | {"conditions": [held, top], "asked": aside}).run()
+
+
+def warned(result):
+    return [warning for warning in result.warnings if UNSTABLE in warning]
+
+
+@pytest.mark.parametrize(("share", "unstable"), [(1 - ABOUT_EULER, False), (1 + ABOUT_EULER, True)])
+def test_a_wide_column_under_a_dead_load(share, unstable, one_thread):
+    plane = 6 * C10 / 0.75 * WIDTH**3 / 12
+    load = {"kind": "traction", "y": -share * euler(plane, 2 * HEIGHT) / WIDTH}
+    assert bool(warned(column("plane_strain", **load))) is unstable
+    assert not warned(column("plane_strain", c10=2 * C10, **load)), "a column of twice the modulus does not buckle"
+
+
+def test_a_small_load_across_leads_to_the_buckled_column(one_thread):
+    share, plane = 1.1, 6 * C10 / 0.75 * WIDTH**3 / 12
+    traction = share * euler(plane, 2 * HEIGHT) / WIDTH
+    buckled = column("plane_strain", kind="traction", y=-traction, x=0.01 * traction)
+    m = brentq(lambda m: (ellipk(m) / (np.pi / 2)) ** 2 - share, 0.0, 0.9)
+    assert not warned(buckled)
+    aside = float(buckled["aside"].value)
+    assert aside == pytest.approx(2 * np.sqrt(m) / ellipk(m) * HEIGHT, rel=4 * ABOUT_EULER), "a load 1 % larger moves it 4 % more"
+
+
+@pytest.mark.parametrize(("share", "motions"), [(1 - ABOUT_EULER, ""), (1 + ABOUT_EULER, "2 motions of the body lower")])
+def test_a_square_column_buckles_either_way(share, motions, one_thread):
+    load = {"kind": "traction", "z": -share * euler(6 * C10 * WIDTH**4 / 12, 2 * HEIGHT) / WIDTH**2}
+    assert [motions in warning for warning in warned(column("3d", **load))] == [True] * bool(motions)
+
+
+@pytest.mark.parametrize(("share", "unstable"), [(1 - ABOUT_EULER, False), (1 + ABOUT_EULER, True)])
+def test_a_column_between_clamps_that_come_closer(share, unstable, one_thread):
+    plane = 6 * C10 / 0.75
+    shortening = share * euler(plane * WIDTH**3 / 12, HEIGHT / 2) / (plane * WIDTH) * HEIGHT
+    assert bool(warned(column("plane_strain", kind="displacement", x=0.0, y=-shortening))) is unstable
+    assert not warned(column("plane_strain", kind="displacement", x=0.0, y=shortening)), "in tension it stays straight"
+
+
+@pytest.mark.parametrize(("share", "unstable"), [(1 - ABOUT_EULER, False), (1 + ABOUT_EULER, True)])
+def test_a_ring_under_outer_pressure_is_flattened(share, unstable, one_thread):
+    """Of a pressure p that follows, 3 E I / r^3 for each length of the middle line (Levy 1884); the thickness is a twentieth."""
+    middle, outer = 20e-3, 20.5e-3
+    thickness = 2 * (outer - middle)
+    pressure = share * 3 * (6 * C10 / 0.75 * thickness**3 / 12) / middle**3 * middle / outer
+    ring = {"kind": "cylinder", "inner_radius": outer - thickness, "radial": [{"length": thickness, "cells": 2}], "around": 30}
+    load = {"kind": "pressure", "face": "outer", "pressure": pressure}
+    problem = {"dimension": "plane_strain", "geometry": ring, "material": {"kind": "neo_hookean", "c10": C10}}
+    result = BoundaryValueProblem.model_validate(problem | {"conditions": [load], "asked": asked("volume")}).run()
+    assert bool(warned(result)) is unstable
+
+
+@pytest.mark.parametrize(("share", "unstable"), [(0.999, False), (1.001, True)])
+def test_a_cube_pulled_alike_on_all_sides(share, unstable, one_thread):
+    """Rivlin's cube of neo-Hookean material, pulled by dead tractions T, is unstable from T = 2 G on (Rivlin 1974): exact."""
+    pulled = [
+        {"kind": "traction", "face": face, axis: share * 4 * C10}
+        for face, axis in zip(("right", "back", "top"), "xyz", strict=True)
+    ]
+    problem = {"geometry": CUBE, "material": {"kind": "neo_hookean", "c10": C10}, "conditions": [*PLANES, *pulled]}
+    assert bool(warned(result_of(**problem, asked=asked("volume")))) is unstable
