@@ -20,14 +20,15 @@ ELAPSED_FORM, TICK = "{desc} [{elapsed}]", 0.5
 """Of what cannot say how far it is, and the seconds after which its time is written anew."""
 _quiet: ContextVar[bool] = ContextVar("quiet", default=False)
 _note: ContextVar[Callable[[str], None] | None] = ContextVar("note", default=None)
-COMPILING = "compiling the element loops, once on this machine (about 25 s)"
+COMPILING = "compiling element loops, which later runs find on this machine (about 25 s)"
 """Source: 17 s of the processor for those of a grasp, of which two busy cores make 20 to 30; numba keeps them from then on."""
 
 
 class Compilation:
-    """What compiling has taken in this process; it is said once, as it begins, that it goes on.
+    """What compiling has taken in this process; it is said once in a run, as it begins, that it goes on.
 
-    One loop is compiled within another, on whatever thread: only the outermost counts.
+    The first run in a section compiles the loops of sections, the first one in space those in space. One loop is compiled within
+    another, on whatever thread: only the outermost counts.
 
     Attributes
     ----------
@@ -38,6 +39,10 @@ class Compilation:
         self.seconds = 0.0
         self._depth, self._begun, self._said = 0, 0.0, False
         self._lock = threading.Lock()
+
+    def of_another_run(self) -> None:
+        """A run begins: what it compiles is said again, for a run before it may have compiled other loops."""
+        self._said = False
 
     def begin(self) -> None:
         """A loop is about to be compiled."""

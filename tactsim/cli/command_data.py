@@ -54,7 +54,7 @@ def _check(arguments: argparse.Namespace) -> int:
     if len(checked.findings) > MOST_FINDINGS:
         console.out(f"and {len(checked.findings) - MOST_FINDINGS} more")
     counts = ", ".join(f"{count} {name}" for name, count in checked.counts.items())
-    verdict = f"{len(checked.findings)} findings" if checked.findings else "nothing found"
+    verdict = f"{len(checked.findings)} finding{'s' * (len(checked.findings) > 1)}" if checked.findings else "nothing found"
     console.out(f"{one_line(arguments.store)}: {counts or 'not read'}; {verdict}")
     return NOT_AS_RECORDED if checked.findings else 0
 

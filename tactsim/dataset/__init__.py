@@ -3,6 +3,6 @@
 What is heavy is imported by the function that needs it.
 """
 
-from tactsim.dataset.use.loading import TorchSamples, load
+from tactsim.dataset.use.loading import TorchSamples, load, sample_case
 
-__all__ = ["TorchSamples", "load"]
+__all__ = ["TorchSamples", "load", "sample_case"]

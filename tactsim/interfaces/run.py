@@ -19,7 +19,7 @@ from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
 from tactsim.kind import CaseKind
 from tactsim.presenter import presenter
-from tactsim.progress import quiet, step_bar
+from tactsim.progress import COMPILATION, quiet, step_bar
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import FieldFrame, Result, Status, StepRecord
 from tactsim.results.scene import Scene
@@ -193,6 +193,7 @@ def run_experiment(experiment: Runnable, progress: Progress | None, seconds: flo
         If the memory does not suffice to begin, or to report what was computed.
     """
     started = time.perf_counter()
+    COMPILATION.of_another_run()
     try:
         with time_limit(seconds):
             course = experiment.begin()

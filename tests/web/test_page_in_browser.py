@@ -243,6 +243,12 @@ def test_no_estimate_is_past_and_a_slow_one_is_cancelled(browser: webdriver.Chro
     assert not shows_element(browser, "busy"), "nothing is computed any more"
     assert "The server has ended" in words(browser, "past")
     assert "the server has ended" in words(browser, "estimate")
+    chosen = browser.find_element(By.CSS_SELECTOR, "input[name=estimator]:checked").get_attribute("value")
+    body.send_keys("1")
+    assert browser.find_element(By.CSS_SELECTOR, "input[name=estimator]:checked").get_attribute("value") == chosen
+    asking = browser.find_elements(By.CSS_SELECTOR, "input[name=estimator], #slider, #play, #again")
+    assert not any(one.is_enabled() for one in asking), "nobody is there to answer"
+    assert all(one.is_enabled() for one in browser.find_elements(By.CSS_SELECTOR, "input[name=unit]"))
 
 
 def test_the_estimate_stands_first_and_everything_fits_a_small_screen(browser: webdriver.Chrome, tmp_path: Path) -> None:

@@ -195,7 +195,9 @@ def description(path: str | Path) -> str:
     lines += [f"  licence {one_line(attributes['license'], 80)}, sweep {one_line(attributes['sweep_id'], 80)}"]
     lines += [f"  {name:<28} {count}" for name, count in [*status_counts(store).items(), *split_counts(store).items()]]
     lines += [f"  {count} x {reason}" for reason, count in failures(store)]
-    lines += [f"  {row[0]:<36} {row[1]:<28} {row[2]:<6} {row[3]}" for row in variable_rows(store)]
+    rows = variable_rows(store)
+    name, shape, unit = (max((len(row[k]) for row in rows), default=0) for k in range(3))
+    lines += [f"  {row[0]:<{name}}  {row[1]:<{shape}}  {row[2]:<{unit}}  {row[3]}" for row in rows]
     return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check says more" for name in store.missing)])
 
 
@@ -252,6 +254,8 @@ def variable_rows(store: Store) -> list[tuple[str, str, str, str]]:
         sizes = zip(array.dimensions[1:], array.shape[1:], strict=True)
         shape = ", ".join(f"{one_line(dimension)} {size}" for dimension, size in sizes)
         units, meaning = (one_line(array.attributes[key]) for key in ("units", "long_name"))
+        if names := one_line(array.attributes.get("flag_meanings", "")).split():
+            meaning += f": {', '.join(f'{number} {word}' for number, word in enumerate(names))}"
         rows.append((name, shape, units, meaning))
     return rows
 

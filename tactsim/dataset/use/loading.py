@@ -17,6 +17,7 @@ from tactsim.outside.extras import extras_named
 if TYPE_CHECKING:
     import xarray
 
+    from tactsim.case.model import Case
     from tactsim.dataset.store.opening import Store
 
 
@@ -85,6 +86,36 @@ def opened(store: str | Path) -> xarray.Dataset:
     whole = dataset_of(place)
     refuse_holes(place, [*map(str, whole.data_vars), *place.missing], chosen_samples(whole, failed=True))
     return whole
+
+
+def sample_case(store: str | Path, sample: int) -> Case:
+    """The case of one sample, as it was computed, of a failed one and of one that is still pending too.
+
+    ``sample_case("lumps.zarr", 7).run()`` repeats sample 7; `tactsim.save_case` writes it for the command line.
+
+    Raises
+    ------
+    InputError
+        If there is no such sample, or no draw of it was possible.
+    StorageError
+        If the folder is not a data set, or this tactsim draws another case than was computed.
+    """
+    from tactsim.dataset.sampling.drawing import drawn_specimen
+    from tactsim.dataset.sampling.stored import stored_sweep
+    from tactsim.dataset.store.opening import Store
+
+    place = Store.open(store)
+    if not 0 <= sample < place.samples:
+        raise InputError(f"sample {sample}: the data set has samples 0 to {place.samples - 1}")
+    sweep = stored_sweep(place)
+    specimen, which = divmod(sample, sweep.per_specimen)
+    drawn = drawn_specimen(sweep, specimen)[which]
+    if drawn.case is None:
+        raise InputError(f"sample {sample}: {drawn.refusal}")
+    stored = str(place.read("case_id")[sample])
+    if stored not in ("", drawn.case.case_id):
+        raise StorageError(f"{store}: sample {sample} was computed from another case than this tactsim draws")
+    return drawn.case
 
 
 def dataset_of(store: Store) -> xarray.Dataset:

@@ -86,6 +86,10 @@ export class Controls {
     if (!frame.playing) slider.setAttribute("aria-valuetext", `step ${frame.step + 1} of ${this.steps.length}, ${time}`);
   }
 
+  lost() { // units change what is drawn here; all else asks the server
+    for (const id of ["estimators", "source-choice", "samples", "play", "slider", "again"]) get(id).disabled = true;
+  }
+
   toggle() { this.send({ do: this.playing ? "pause" : "play" }); }
 
   #filter() { this.send({ do: "filter", split: get("split").value, status: get("status").value }); }
@@ -102,7 +106,7 @@ export class Controls {
       this.step = wanted;
     } else if (/^[1-9]$/.test(event.key) && !typing) {
       const input = get("estimators").querySelectorAll("input")[Number(event.key) - 1];
-      if (!input || input.disabled || input.checked) return;
+      if (!input || input.matches(":disabled") || input.checked) return;
       input.checked = true;
       this.send({ do: "estimator", name: input.value });
     } else {

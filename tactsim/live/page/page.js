@@ -220,6 +220,7 @@ function connect() {
   };
   socket.onclose = () => {
     answer.lost();
+    controls.lost();
     past();
     received = 0;
   };

@@ -14,6 +14,7 @@ from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
+from tactsim.dataset.use import card
 from tactsim.dataset.use.card import _use, card_text
 from tactsim.shipped import CASES
 
@@ -26,6 +27,19 @@ def store(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, str]:
     with opened_run(sweep, folder / "s.zarr") as going:
         going.compute(Inline(sweep), lambda tally: None)
     return folder / "s.zarr", card_text(Store.open(folder / "s.zarr"), sweep, layout_of(sweep))
+
+
+def test_numbers_that_stand_for_words_are_named(store: tuple[Path, str]) -> None:
+    _, written = store
+    assert "| status |  | 1 | whether the sample was computed: 0 pending, 1 done, 2 failed |" in written
+    assert "by specimen: 0 train, 1 validation, 2 test, 3 softer |" in written
+
+
+def test_columns_of_long_names_align(store: tuple[Path, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    rows = [("force", "time 4", "N", "short"), ("varied_" + 40 * "x", "jaw 2, row 3, column 3, axis 3", "m", "long")]
+    monkeypatch.setattr(card, "variable_rows", lambda store: rows)
+    short, long = card.description(store[0]).splitlines()[-2:]
+    assert short.index("short") == long.index("long")
 
 
 def test_the_code_in_the_card_runs(store: tuple[Path, str], monkeypatch: pytest.MonkeyPatch) -> None:

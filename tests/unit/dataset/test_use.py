@@ -19,7 +19,7 @@ from fork_server import forked_python
 from sweeps import compute_once_here, sweep_file
 
 from tactsim.cli import main
-from tactsim.dataset import TorchSamples, load
+from tactsim.dataset import TorchSamples, load, sample_case
 from tactsim.dataset.checking import check
 from tactsim.dataset.running.run import Tally
 from tactsim.dataset.sampling.layout import layout_of
@@ -39,6 +39,19 @@ def test_splits_are_apart_and_together_all(kept: Path) -> None:
     assert load(kept, split=["train", "test"]).sizes["sample"] == parts["train"].sizes["sample"] + parts["test"].sizes["sample"]
     assert list(load(kept, variables=["force"]).data_vars) == ["force"]
     assert load(kept)["sample"].values.tolist() == list(range(24))
+
+
+def test_the_case_of_a_sample_repeats_it_to_the_last_bit(kept: Path) -> None:
+    data = load(kept)
+    for number in (0, 7, 23):
+        case = sample_case(kept, number)
+        one = data.sel(sample=number)
+        assert case.case_id == str(one["case_id"].values)
+        force = case.run(None).history_values("force")
+        assert force[-1] == one["force"].values[-1]
+    for number in (-1, 24):
+        with pytest.raises(InputError, match=f"sample {number}: the data set has samples 0 to 23"):
+            sample_case(kept, number)
 
 
 def test_unknown_names_are_refused(kept: Path, tmp_path: Path) -> None:

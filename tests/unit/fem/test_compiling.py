@@ -11,6 +11,8 @@ import pytest
 
 import tactsim.fem.compiling
 from tactsim import progress
+from tactsim.experiments.annulus.closed_form import ClosedForm
+from tactsim.interfaces import run
 from tactsim.progress import COMPILING, Compilation, noted_by, quiet
 
 SOURCE = "import numba\n\n@numba.njit(cache=True)\ndef doubled(x):\n    return 2 * x\n"
@@ -45,6 +47,19 @@ def test_compiling_is_said_once_and_counted_and_a_cached_loop_is_not(tmp_path: P
         took = compilation.seconds
         assert doubled(tmp_path)(2) == 4
         assert compilation.seconds == took, "numba's cache held it"
+
+
+def test_every_run_that_compiles_says_so(compilation: Compilation, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As the first grasp after an indentation, whose loops in space took half a minute without a word."""
+    monkeypatch.setattr(run, "COMPILATION", compilation)
+    notes: list[str] = []
+    with noted_by(notes.append):
+        for _ in range(2):
+            ClosedForm.example().run(None)
+            for _ in range(2):
+                compilation.begin()
+                compilation.end()
+    assert notes == [COMPILING, COMPILING]
 
 
 def test_whom_a_run_does_not_report_to_is_not_told(compilation: Compilation, capsys: pytest.CaptureFixture[str]) -> None:

@@ -154,7 +154,7 @@ def _mark_last(axis: Axes, result: Result, along: float, up: float) -> None:
     last = result.steps[-1].values
     at = (last["displacement"] * along, last["reaction_force"] * up)
     axis.plot(*at, "X", color=FAILED_COLOUR, markersize=9)
-    words = "interrupted here" if result.status is Status.INTERRUPTED else "stopped here"
-    # In the corner below the curves, which rise: beside the cross it would lie on them and on the line of the inner sensor.
-    words = f"{words} at {format_quantity(last['displacement'], 'm')}"
-    axis.text(0.97, 0.05, words, transform=axis.transAxes, ha="right", va="bottom", color=FAILED_COLOUR, zorder=6)
+    words = "interrupted" if result.status is Status.INTERRUPTED else "stopped"
+    # Above the curves: force and rise leave no corner between them that is free in every run.
+    words = f"{words} (cross) at {format_quantity(last['displacement'], 'm')}; {axis.get_title(loc='left')}"
+    axis.set_title(words, loc="left", color=FAILED_COLOUR)

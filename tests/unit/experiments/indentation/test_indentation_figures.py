@@ -84,9 +84,11 @@ def test_labels_of_a_run_that_stopped_early_lie_on_nothing():
     section, curve = figure.axes[0], next(axis for axis in figure.axes if "force on the body" in axis.get_ylabel())
     (sensor,) = [text for text in section.texts if "inner sensor" in text.get_text()]
     assert sensor.get_window_extent().y1 <= section.get_window_extent().y1 + 1, "not on the title"
-    (stopped,) = [text for text in curve.texts if "stopped here" in text.get_text()]
-    assert stopped.get_window_extent().y1 < curve.get_window_extent().y0 + 0.2 * curve.get_window_extent().height
-    assert not any(stopped.get_window_extent().contains(*point) for point in drawn_points(curve))
+    assert "stopped (cross) at 400 µm; 4 accepted steps" in curve.get_title(loc="left")
+    rise = next(axis for axis in figure.axes if "rise" in axis.get_ylabel())
+    points = [*drawn_points(curve), *drawn_points(rise)]
+    for text in curve.texts:
+        assert not any(text.get_window_extent().contains(*point) for point in points), text.get_text()
 
 
 def scene_with(recess):
