@@ -444,6 +444,30 @@ def test_an_interrupted_sweep_says_what_is_kept_and_how_to_go_on(tmp_path: Path,
 
 
 @pytest.mark.usefixtures("in_this_process")
+@pytest.mark.parametrize("during", ["closing the workers", "drawing"])
+def test_a_second_interruption_of_a_sweep_says_how_to_go_on_too(
+    during: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It ends the sweep at once, wherever that was, and the samples that were done are there."""
+    varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
+    how = {"samples": 90, "out": tmp_path / "annuli.zarr", "workers": 1, "splits": {"train": 0.5, "validation": 0.5}}
+
+    def interrupt(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep, stop_after=1))
+        if during == "drawing":
+            patched.setattr("tactsim.dataset.figures.card.card_figures", interrupt)
+        else:
+            patched.setattr(Inline, "close", lambda self, closings=iter([interrupt]): next(closings, list)())
+        with pytest.raises(KeyboardInterrupt, match=r"^the samples .* kept in .*annuli\.zarr; go on with resume=True$") as stopped:
+            ts.sweep(varied, **how)
+    assert stopped.value.__suppress_context__, "a notebook shows one traceback, not those of both interruptions"
+    assert ts.sweep(varied, resume=True, **how).sizes["sample"] == 90
+
+
+@pytest.mark.usefixtures("in_this_process")
 def test_a_sweep_goes_on_with_changed_code_if_that_is_accepted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
     how = {"samples": 2, "out": tmp_path / "annuli.zarr", "workers": 1, "splits": {"train": 1.0, "validation": 0.0}}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Callable, Iterator
-from contextlib import closing
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -84,6 +84,7 @@ def sweep(
     with (
         closing(LocalWorkers.of(asked, workers)) as executor,
         opened_run(asked, out, resume=resume, accept_changes=accept_changed_code) as run,
+        _resumable(out),
         count_bar("samples", run.store.samples) as shown,
     ):
         troubles = card(run)
@@ -99,6 +100,15 @@ def sweep(
         kept = f"{run.store.samples - left} of {run.store.samples} samples are kept in {one_line(out)}"
         raise KeyboardInterrupt(f"{kept}; go on with resume=True")
     return load(out)
+
+
+@contextmanager
+def _resumable(out: str | Path) -> Iterator[None]:
+    """A block whose interruption, such as a second one while the first is heeded, says how to go on."""
+    try:
+        yield
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(f"the samples that were done are kept in {one_line(out)}; go on with resume=True") from None
 
 
 def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Sweep:
