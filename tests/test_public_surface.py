@@ -460,8 +460,9 @@ def test_a_second_interruption_of_a_sweep_says_how_to_go_on_too(
         if during == "drawing":
             patched.setattr("tactsim.dataset.figures.card.card_figures", interrupt)
         else:
-            patched.setattr(Inline, "close", lambda self, closings=iter([interrupt]): next(closings, list)())
-        with pytest.raises(KeyboardInterrupt, match=r"^the samples .* kept in .*annuli\.zarr; go on with resume=True$") as stopped:
+            closings = iter([interrupt])
+            patched.setattr(Inline, "close", lambda self: next(closings, list)())
+        with pytest.raises(KeyboardInterrupt, match=r"^the samples .* kept in .*\.zarr; go on with resume=True$") as stopped:
             ts.sweep(varied, **how)
     assert stopped.value.__suppress_context__, "a notebook shows one traceback, not those of both interruptions"
     assert ts.sweep(varied, resume=True, **how).sizes["sample"] == 90
