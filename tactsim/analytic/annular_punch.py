@@ -156,8 +156,8 @@ def influence(ring: LogarithmicRing, layer: Layer, r: np.ndarray) -> np.ndarray:
 
 def own_influence(ring: LogarithmicRing, layer: Layer) -> tuple[np.ndarray, np.ndarray]:
     """`influence` at the points themselves, shape (terms, terms), and on the axis, shape (terms,)."""
-    own = ring.half_space_influence(ring.radii)
-    axis = ring.half_space_influence(np.array([AXIS * ring.hole]))[0]
+    both = ring.half_space_influence(np.append(ring.radii, AXIS * ring.hole))
+    own, axis = both[:-1], both[-1]
     if np.isinf(layer.thickness):
         return own, axis
     added, added_on_axis = ring.own_layer_influence(layer)

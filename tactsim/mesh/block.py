@@ -22,13 +22,9 @@ SMALLEST_GAP = 0.3
 """Least distance between inclusions, and from faces, in element sizes near inclusions."""
 
 
-class BlockMeshSettings(FrozenModel):
-    """Element sizes in a block with inclusions; the defaults give the default grasp about 40 000 unknowns."""
+class MesherSettings(FrozenModel):
+    """What is asked of a mesh beside the lengths of its edges."""
 
-    size: Positive[Length] = 3.3e-3
-    """Edge length far from inclusions and jaw edges."""
-    inclusion_size: Positive[Length] = 2.6e-3
-    """Edge length at inclusions; a thin wall gets smaller ones by itself."""
     edge_size: Positive[Length] | None = None
     """Edge length at the edges of the jaws; null means two thirds of size."""
     jaw: tuple[Positive[Length], Positive[Length]] | None = None
@@ -39,6 +35,15 @@ class BlockMeshSettings(FrozenModel):
     """Shape energy at which the mesher stops improving (3 is a regular tetrahedron)."""
     time_limit: Positive[Time] = 300.0
     """Time after which the mesher is stopped."""
+
+
+class BlockMeshSettings(MesherSettings):
+    """Element sizes in a block with inclusions; the defaults give the default grasp about 40 000 unknowns."""
+
+    size: Positive[Length] = 3.3e-3
+    """Edge length far from inclusions and jaw edges."""
+    inclusion_size: Positive[Length] = 2.6e-3
+    """Edge length at inclusions; a thin wall gets smaller ones by itself."""
 
     @property
     def least_gap(self) -> float:

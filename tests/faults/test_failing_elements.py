@@ -11,7 +11,7 @@ from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.materials.neo_hookean import NeoHookean
-from tactsim.mechanics.models.block_source import FileSource
+from tactsim.mechanics.models.block_file import FileSource
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.structured_block import structured_block
 

@@ -69,8 +69,8 @@ def taxels(force: Array) -> Figure:
         for number, (side, values) in enumerate(zip(JAWS, force, strict=True), 1):
             axis = figure.add_subplot(1, 2, number)
             image = axis.imshow(values, origin="lower", vmin=0.0, vmax=float(force.max()), cmap=PRESSURE_COLOURS)
-            axis.set_title(f"mean force, {side} jaw", loc="left")
-            axis.set(xlabel="column, the smallest x first", ylabel="row, the nearest to the front first")
+            axis.set_title(f"{side} jaw", loc="left")
+            axis.set(xlabel="column, along x", ylabel="row, along y")
             axis.set_xticks(range(values.shape[1]), [str(k + 1) for k in range(values.shape[1])])
             axis.set_yticks(range(values.shape[0]), [str(k + 1) for k in range(values.shape[0])])
             figure.colorbar(image, ax=axis, label="mean force in N", shrink=0.8)

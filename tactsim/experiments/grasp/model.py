@@ -7,8 +7,9 @@ import numpy as np
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.mechanics.models.any_block_source import AnySource, AutomaticSource
 from tactsim.mechanics.models.block_model import GraspModel
-from tactsim.mechanics.models.block_source import AnySource, AutomaticSource, GradedSource, SourcedBlock, TetrahedraSource
+from tactsim.mechanics.models.block_source import GradedSource, SourcedBlock, TetrahedraSource
 
 
 def grasp_mesh(experiment: GraspSetup) -> SourcedBlock:

@@ -19,7 +19,7 @@ from tactsim.interfaces import Inclusion, Material
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
-from tactsim.mechanics.models.block_source import AnyBlockSource, AnySource, AutomaticSource
+from tactsim.mechanics.models.any_block_source import AnyBlockSource, AnySource, AutomaticSource
 from tactsim.mechanics.paths.loading import AnyLoading, check_periods
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.model import FrozenModel
@@ -195,7 +195,7 @@ class GraspSetup(FrozenModel):
     def _embedded(self) -> Self:
         size = np.array(self.block.size)
         try:
-            check_inclusions(size, self.shapes, self.source.least_gap)
+            check_inclusions(size, self.shapes, self.source.least_gap(self.block.size))
         except InvalidQuantity as error:
             names = [f"{inclusion_name(number, shape)} " for number, shape in enumerate(self.shapes, 1)]
             blamed = [f"inclusions.{k}.shape: " for k, name in enumerate(names) if str(error).startswith(name)]

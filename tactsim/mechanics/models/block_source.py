@@ -1,14 +1,13 @@
-"""Where the mesh of a block comes from: made of tetrahedra, built of cells, or read from a file.
+"""Where the mesh of a block comes from: made of tetrahedra, or built of cells.
 
 What makes a mesh is loaded when one is made, so that a wrong word in a case is reported without it.
 """
 
 from __future__ import annotations
 
-import time
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Annotated, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 from pydantic import Field
@@ -16,24 +15,16 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
-from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.any_inclusion import inclusion_name
-from tactsim.mesh.block import BlockMesh, BlockMeshSettings
-from tactsim.mesh.foreign import LengthUnit
+from tactsim.mesh.block import BlockMesh, BlockMeshSettings, MesherSettings
 from tactsim.model import FrozenModel
-from tactsim.outside.input_path import InputPath
-from tactsim.units import Length, NonNegative, Positive, format_quantity
-
-if TYPE_CHECKING:
-    from tactsim.mesh.fitting.labelling import Surfaces
+from tactsim.units import Length, Positive
 
 Size = tuple[float, float, float]
-FITS = 1e-6
-"""Largest difference between the extent of a mesh from a file and the block, over the block's longest side."""
-LEAST_SHARED = 0.5
-"""Least part that a region of a mesh from a file shares with the inclusion of the case, of what either fills."""
 TOUCHING = 1e-5
 """Distance in m below which bodies touch, where no mesh is made to follow them."""
+FULL_SIDE = 20e-3
+"""Least side in m of a block from which on the usual element sizes hold; in smaller ones they are in proportion to it."""
 GAP_SHARE = 0.125
 """Least distance of a lump from the faces, in element sizes near it, where cells are built around it."""
 
@@ -54,11 +45,6 @@ class SourcedBlock:
         return cls(block, content_hash(block.mesh), origin)
 
 
-def _sizes(source: BlockMeshSettings) -> BlockMeshSettings:
-    """The element sizes of a source alone, by which meshes are named."""
-    return BlockMeshSettings.model_validate(source.model_dump(exclude={"kind"}))
-
-
 class BlockSource(FrozenModel):
     """What gives the mesh of a block."""
 
@@ -70,8 +56,33 @@ class BlockSource(FrozenModel):
         ``flats`` (2, 2) in m inside it; None if it can."""
         return None
 
+    def least_gap(self, size: Size) -> float:
+        """Least distance in m between inclusions, and from faces, in a block of this size in m."""
+        return TOUCHING
 
-class TetrahedraSource(BlockMeshSettings, BlockSource):
+
+class SizedSource(MesherSettings, BlockSource):
+    """Elements by the lengths of their edges."""
+
+    usual: ClassVar[dict[str, float]] = {"size": 3.3e-3, "inclusion_size": 2.6e-3}
+    """Edge lengths in m that a case leaves out, in a block whose sides are `FULL_SIDE` at least."""
+    size: Positive[Length] | None = None
+    """Edge length far from inclusions and jaw edges; by default 3.3 mm, or 0.165 of the block's least side if that is less."""
+    inclusion_size: Positive[Length] | None = None
+    """Edge length at inclusions, smaller by itself at a thin wall; by default 2.6 mm, or 0.13 of the block's least side if that
+    is less."""
+
+    def settings(self, size: Size) -> BlockMeshSettings:
+        """The lengths themselves in a block of this size in m."""
+        part, given = min(1.0, min(size) / FULL_SIDE), self.model_dump(exclude={"kind"}, exclude_none=True)
+        return BlockMeshSettings.model_validate({name: part * length for name, length in self.usual.items()} | given)
+
+    def least_gap(self, size: Size) -> float:
+        """Least distance in m between inclusions, and from faces, in a block of this size in m."""
+        return self.settings(size).least_gap
+
+
+class TetrahedraSource(SizedSource):
     """Tetrahedra that follow the inclusions, made once and kept."""
 
     kind: Literal["tetrahedra"] = "tetrahedra"
@@ -80,11 +91,11 @@ class TetrahedraSource(BlockMeshSettings, BlockSource):
         """The mesh of a block of this size in m, shipped, from the cache, or made now."""
         from tactsim.mesh.mesh_store import stored_block_mesh
 
-        stored = stored_block_mesh(size, inclusions, _sizes(self))
+        stored = stored_block_mesh(size, inclusions, self.settings(size))
         return SourcedBlock(stored.block, stored.content, stored.origin)
 
 
-class LayersSource(BlockMeshSettings, BlockSource):
+class LayersSource(SizedSource):
     """Layers of cells around one sphere or ellipsoid: lumps moved or turned have meshes of one topology."""
 
     kind: Literal["layers"]
@@ -106,41 +117,42 @@ class LayersSource(BlockMeshSettings, BlockSource):
 
         if len(inclusions) != 1:
             raise InputError(f"mesh.kind: layers serves exactly one inclusion, not {len(inclusions)}; take kind: tetrahedra")
-        return SourcedBlock.of(morphed_block(size, inclusions[0], _sizes(self)), "built in layers")
+        return SourcedBlock.of(morphed_block(size, inclusions[0], self.settings(size)), "built in layers")
 
 
-class GradedSource(BlockMeshSettings, BlockSource):
+class GradedSource(SizedSource):
     """Few cells, thin at the faces, rounded around spheres and ellipsoids, in rings around tubes: the fastest for its accuracy.
     Several lumps are served where along x, y or z one of each two ends before the other begins."""
 
+    usual: ClassVar[dict[str, float]] = {"size": 6e-3, "inclusion_size": 2e-3, "edge_size": 1.6e-3}
     kind: Literal["graded"] = "graded"
-    size: Positive[Length] = 6e-3
-    """Edge length far from the inclusion and the faces."""
-    inclusion_size: Positive[Length] = 2e-3
-    """Edge length at the inclusion, about; three to five cells across it at least, by its size and place."""
-    edge_size: Positive[Length] | None = 1.6e-3
-    """Thickness of cells at the faces, from which they grow at once; null means a third of size. Where a jaw is smaller than the
-    block, they are three quarters as thick, and thin also on both sides of its edges."""
+    size: Positive[Length] | None = None
+    """Edge length far from the inclusion and the faces; by default 6 mm, or 0.3 of the block's least side if that is less."""
+    inclusion_size: Positive[Length] | None = None
+    """Edge length at the inclusion, about; three to five cells across it at least, by its size and place. By default 2 mm, or 0.1
+    of the block's least side if that is less."""
+    edge_size: Positive[Length] | None = None
+    """Thickness of cells at the faces, from which they grow at once; by default 1.6 mm, or 0.08 of the block's least side if that
+    is less. Where a jaw is smaller than the block, they are three quarters as thick, and thin also on both sides of its edges."""
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0
     """By how much a cell is thicker than the one before it, nearer to a face, over that one's thickness."""
 
-    @property
-    def least_gap(self) -> float:
-        """Least distance in m between the inclusion and the faces."""
-        return GAP_SHARE * self.inclusion_size
+    def least_gap(self, size: Size) -> float:
+        """Least distance in m between the inclusion and the faces of a block of this size in m."""
+        return GAP_SHARE * self.settings(size).inclusion_size
 
     def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
         """Which of the inclusions are of other forms, in each other's way, or below the edge of a jaw."""
         from tactsim.mesh.graded.block import graded_misfit
 
-        reason = graded_misfit(size, inclusions, flats)
+        reason = graded_misfit(size, inclusions, flats, self.settings(size))
         return reason and f"graded: {reason}"
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
         """The mesh of a block of this size in m around its inclusions, if any; with the edges of ``flats`` (2, 2) in m."""
         from tactsim.mesh.graded.block import graded_block
 
-        block = graded_block(size, inclusions, _sizes(self), flats)
+        block = graded_block(size, inclusions, self.settings(size), flats)
         origin = "graded cells"
         if block.fewer_layers:
             origin += f", layers fewer than usual around inclusions close to each other or to a face: {block.fewer_layers}"
@@ -154,11 +166,6 @@ class StructuredSource(BlockSource):
     kind: Literal["structured"]
     cells: tuple[Annotated[int, Field(ge=1, le=500)], Annotated[int, Field(ge=1, le=500)], Annotated[int, Field(ge=1, le=500)]]
     """Number of cells along x, y and z."""
-
-    @property
-    def least_gap(self) -> float:
-        """Least distance in m between inclusions, and from faces."""
-        return TOUCHING
 
     def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
         """Which hollow inclusion its elements cannot follow."""
@@ -183,112 +190,3 @@ class StructuredSource(BlockSource):
                     "take more cells or mesh.kind: tetrahedra"
                 )
         return SourcedBlock.of(block, "structured")
-
-
-class FileSource(BlockSource):
-    """A mesh made by another program, for the block and the inclusions that the case describes."""
-
-    finer: ClassVar[str] = "make smaller elements there in the file"
-    kind: Literal["file"]
-    path: InputPath
-    """Any file of tetrahedra that meshio reads."""
-    unit: LengthUnit
-    """Unit of its coordinates."""
-    regions: dict[str, NonNegative[int]] | None = None
-    """Region of each tag: 0 is the tissue, k the inclusion k counted from 1. Tags are whole numbers or names of groups."""
-    tag: str | None = None
-    """Name of the cell data with the tags; by default the first usual one in the file."""
-
-    @property
-    def least_gap(self) -> float:
-        """Least distance in m between inclusions, and from faces."""
-        return TOUCHING
-
-    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
-        """The mesh in the file, checked against the block and the number of inclusions.
-
-        Raises
-        ------
-        InputError
-            If the mesh has other regions or another size than the block of the case.
-        """
-        from tactsim.mesh.fitting.curving import assembled
-        from tactsim.mesh.fitting.labelling import Surfaces
-        from tactsim.mesh.mesh_store import content_hash
-        from tactsim.mesh.reading import read_mesh
-        from tactsim.mesh.wholeness import check_whole
-
-        started = time.perf_counter()
-        numbered = None if self.regions is None else {_tag(name): region for name, region in self.regions.items()}
-        mesh = read_mesh(self.path, numbered, unit=self.unit, tag=self.tag)
-        check_unknowns(mesh.nodes.size + mesh.corner_count, f"mesh.path {self.path}")
-        count, expected = int(mesh.regions.max()) + 1, len(inclusions) + 1
-        if count != expected:
-            raise InputError(
-                f"{self.path} has {count} regions, the case has {expected}: the tissue and {len(inclusions)} inclusions; "
-                "map every tag in mesh.regions"
-            )
-        extent, wanted = np.stack([mesh.nodes.min(axis=0), mesh.nodes.max(axis=0)]), np.stack([np.zeros(3), size])
-        if np.abs(extent - wanted).max() > FITS * max(size):
-            low, high = ([format_quantity(float(v), "m") for v in row] for row in extent)
-            raise InputError(
-                f"{self.path} spans {', '.join(low)} to {', '.join(high)}; the block spans 0 to "
-                f"{', '.join(format_quantity(v, 'm') for v in size)}; is mesh.unit right?"
-            )
-        surfaces = Surfaces(np.asarray(size, float), [inclusion.solids(np.asarray(size, float)) for inclusion in inclusions])
-        check_whole(mesh, surfaces, self.path)
-        content, seconds = content_hash(mesh), time.perf_counter() - started
-        made = assembled(mesh, surfaces, inclusions, key=f"file-{content}", seconds=seconds, straightened=0, fitting=False)
-        _check_places(made, surfaces, self.path)
-        return SourcedBlock(made, content, f"file {self.path}")
-
-
-def _check_places(block: BlockMesh, surfaces: Surfaces, path: str) -> None:
-    """Refuse a mesh whose regions lie elsewhere than the inclusions of the case, or that fills an empty space.
-
-    Raises
-    ------
-    InputError
-        Naming the inclusion, its volume in the case and the part that the region of the mesh shares with it.
-    """
-    points = block.mesh.nodes[block.mesh.elements[:, :4]]
-    volumes = np.abs(np.linalg.det(points[:, 1:] - points[:, :1])) / 6
-    meant = surfaces.labels(points.mean(axis=1))
-    for number, name in enumerate(block.region_names[1:], 1):
-        labelled, there = block.mesh.regions == number, meant == number
-        share = volumes[labelled & there].sum() / volumes[labelled | there].sum()
-        if share < LEAST_SHARED:
-            held, exact = (f"{1e9 * float(volume):.4g} mm^3" for volume in block.volumes[number])
-            raise InputError(
-                f"{path}: region {number} ({held}) shares {100 * share:.3g} % of its place with {name} of the case ({exact}); "
-                f"needed: {100 * LEAST_SHARED:g} %; are the tags in mesh.regions and the place in inclusions right?"
-            )
-    for name, facets in block.facets.items():
-        if not len(facets):
-            raise InputError(f"{path}: no facet of the mesh lies on {name}; an empty space must be left out of the mesh")
-
-
-def _tag(name: str) -> int | str:
-    """A whole number if the name is one."""
-    return int(name) if name.lstrip("-").isdigit() else name
-
-
-class AutomaticSource(BlockSource):
-    """Graded cells where they can follow the inclusions; tetrahedra around free forms, and bodies below the edge of a jaw."""
-
-    kind: Literal["automatic"] = "automatic"
-    graded: GradedSource = GradedSource()
-    """The cells around spheres, ellipsoids and tubes."""
-    tetrahedra: TetrahedraSource = TetrahedraSource()
-    """The tetrahedra otherwise."""
-
-    def chosen(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> GradedSource | TetrahedraSource:
-        """What suits these inclusions in a block of this size in m, and jaws with these ``flats`` (2, 2) in m."""
-        return self.graded if self.graded.misfit(size, inclusions, flats) is None else self.tetrahedra
-
-
-AnySource = TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource
-"""What gives a mesh."""
-AnyBlockSource = Annotated[
-    AutomaticSource | TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource, Field(discriminator="kind")
-]

@@ -82,10 +82,12 @@ def graded_block(
     raise ConvergenceError(f"no graded cells {verb} {names}: {reason}; take mesh.kind: tetrahedra")
 
 
-def graded_misfit(size: Sequence[float], inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
+def graded_misfit(
+    size: Sequence[float], inclusions: Sequence[Inclusion], flats: Sequence[Array], settings: BlockMeshSettings
+) -> str | None:
     """Why inclusions between these ``flats`` cannot have graded cells; None if they may."""
     try:
-        between = _between(inclusions, footprint_of(flats, np.asarray(size, float), BlockMeshSettings()))
+        between = _between(inclusions, footprint_of(flats, np.asarray(size, float), settings))
         if between.tubes:
             _bundle(between, 0)
         elif len(between.lumps) > 1:

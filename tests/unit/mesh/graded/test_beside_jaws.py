@@ -9,6 +9,7 @@ import pytest
 from lumps import assert_sound, same_mirrored
 
 from tactsim.errors import InputError
+from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.graded.beside_jaws import THINNER, footprint_of
 from tactsim.mesh.graded.block import graded_block, graded_misfit
@@ -125,6 +126,23 @@ def test_the_part_between_offset_jaws_is_that_between_both():
     ],
 )
 def test_what_no_cells_serve_is_refused(inclusions, flats, reason):
-    assert reason in graded_misfit(SIZE, inclusions, flats)
+    assert reason in graded_misfit(SIZE, inclusions, flats, COARSE)
     with pytest.raises(InputError, match=reason):
         graded_block(SIZE, inclusions, COARSE, flats)
+
+
+@pytest.mark.parametrize("name", ["plain", "ball", "artery"])
+@pytest.mark.parametrize("flats", [[], [NARROW, OFFSET]], ids=["jaws that cover it", "narrow jaws"])
+def test_a_small_block_has_the_cells_of_a_large_one(name, flats):
+    """Sizes that nobody gives are in proportion to a block that is thinner than 20 mm."""
+    tenth = [_tenth(body) for body in INCLUSIONS[name]]
+    large = GradedSource().sourced(SIZE, INCLUSIONS[name], flats).block.mesh
+    small = GradedSource().sourced(tuple(0.1 * np.array(SIZE)), tenth, [0.1 * flat for flat in flats]).block.mesh
+    np.testing.assert_array_equal(small.elements, large.elements)
+    np.testing.assert_allclose(small.nodes, 0.1 * large.nodes, rtol=0, atol=1e-9)
+
+
+def _tenth(body):
+    """The same body at a tenth of its place and size."""
+    lengths = body.model_dump(exclude={"kind"})
+    return type(body).model_validate({name: (0.1 * np.array(length)).tolist() for name, length in lengths.items()})

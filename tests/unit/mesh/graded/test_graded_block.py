@@ -193,7 +193,7 @@ LUMPS = {
 @pytest.mark.parametrize("name", LUMPS)
 def test_lumps_in_no_row_fill_bricks(name):
     lumps = [Sphere(center=tuple(1e-3 * np.array(place)), radius=3e-3) for place in LUMPS[name]]
-    assert graded_misfit(SIZE, lumps) is None
+    assert graded_misfit(SIZE, lumps, [], COARSE) is None
     block = graded_block(SIZE, lumps, COARSE)
     assert np.abs(block.volume_errors).max() < VOLUME_TOLERANCE
     assert block.quality.minimum > 0.1

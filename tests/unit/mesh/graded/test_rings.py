@@ -9,7 +9,9 @@ import pytest
 from lumps import CURVED, SIZE, same_mirrored
 
 from tactsim.errors import InputError
-from tactsim.mechanics.models.block_source import AutomaticSource, GradedSource
+from tactsim.mechanics.models.any_block_source import AutomaticSource
+from tactsim.mechanics.models.block_source import GradedSource
+from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.fitting.labelling import Surfaces, interfaces
 from tactsim.mesh.fitting.wedges import side_patches
 from tactsim.mesh.graded import block as graded_module
@@ -128,7 +130,7 @@ def test_the_bore_is_as_exact_as_its_arcs_are():
     ],
 )
 def test_what_rings_cannot_follow_is_told_and_gets_tetrahedra(inclusions, words):
-    misfit = graded_misfit(SIZE, inclusions)
+    misfit = graded_misfit(SIZE, inclusions, [], BlockMeshSettings())
     assert misfit is not None
     assert words in misfit
     with pytest.raises(InputError, match=words):

@@ -1,0 +1,41 @@
+"""All that gives the mesh of a block, and the choice among them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from tactsim.array import Array
+from tactsim.interfaces import Inclusion
+from tactsim.mechanics.models.block_file import FileSource
+from tactsim.mechanics.models.block_source import (
+    BlockSource,
+    GradedSource,
+    LayersSource,
+    Size,
+    StructuredSource,
+    TetrahedraSource,
+)
+
+
+class AutomaticSource(BlockSource):
+    """Graded cells where they can follow the inclusions; tetrahedra around free forms, and bodies below the edge of a jaw."""
+
+    kind: Literal["automatic"] = "automatic"
+    graded: GradedSource = GradedSource()
+    """The cells around spheres, ellipsoids and tubes."""
+    tetrahedra: TetrahedraSource = TetrahedraSource()
+    """The tetrahedra otherwise."""
+
+    def chosen(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> GradedSource | TetrahedraSource:
+        """What suits these inclusions in a block of this size in m, and jaws with these ``flats`` (2, 2) in m."""
+        return self.graded if self.graded.misfit(size, inclusions, flats) is None else self.tetrahedra
+
+
+AnySource = TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource
+"""What gives a mesh."""
+AnyBlockSource = Annotated[
+    AutomaticSource | TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource, Field(discriminator="kind")
+]
