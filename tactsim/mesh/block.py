@@ -26,7 +26,7 @@ class MesherSettings(FrozenModel):
     """What is asked of a mesh beside the lengths of its edges."""
 
     edge_size: Positive[Length] | None = None
-    """Edge length at the edges of the jaws; null means two thirds of size."""
+    """Edge length at the edges of the jaws; null means two thirds of size, less at flats narrower than 20 mm."""
     jaw: tuple[Positive[Length], Positive[Length]] | None = None
     """Columns and rows of the jaws, centred on the block; null means jaws that cover the block."""
     growth: Annotated[float, Field(gt=0, le=2)] = 0.5

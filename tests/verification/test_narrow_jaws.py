@@ -1,6 +1,6 @@
 """Jaws smaller than the block, on the mesh that a grasp has by default: taxels that mirror each other are equal, and right.
 
-Mutants: cells without lines at the edges of the jaws, and cells that no plane mirrors.
+Mutants: cells without lines at the edges of the jaws, cells that no plane mirrors, and cells as thick as at larger jaws.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ from mutants import assert_kills
 
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.results import Result
 
 EQUAL = 3e-3
 """Difference allowed of equal taxels over the largest, a fifth of what the least palpable lump changes one by."""
@@ -24,23 +25,42 @@ FINE = np.array([[77.226, 76.596, 77.226], [76.596, 78.849, 76.596], [77.226, 76
 CONVERGED = 4e-3
 """Difference allowed of the finer of two meshes, of which the finest differs by less."""
 SMALLER = {"width": 24e-3, "depth": 24e-3, "fillet": 2e-3}
+TINY = {"width": 8e-3, "depth": 8e-3, "fillet": 0.7e-3}
+FINE_TINY, FINE_TINY_REACTION = np.full((2, 2), 6.9578e-3), 0.124050
+"""Forces in N on the taxels of such jaws, and of the whole jaw, by 218 262 unknowns: ``{kind: graded, size: 4 mm, growth: 0.6,
+edge_size: 0.364 mm}``."""
 
 
 def pressed(mesh: dict[str, Any]) -> np.ndarray:
     """Forces (jaw, row, column) in N on taxels that reach to 0.75 mm from the edges of flats of 20 mm, closed by 1 mm."""
+    return forces_of(closed(SMALLER, {"rows": 3, "columns": 3, "pitch": 6.5e-3, "size": 5.5e-3}, 1e-3, mesh))
+
+
+def pressed_by_tiny_jaws(mesh: dict[str, Any]) -> Result:
+    """Jaws of a fifth of the block's sides."""
+    return closed(TINY, {"rows": 2, "columns": 2, "pitch": 2.5e-3, "size": 2.2e-3}, 0.6e-3, mesh)
+
+
+def closed(jaw: dict[str, float], matrix: dict[str, Any], by: float, mesh: dict[str, Any]) -> Result:
+    """A block between two such jaws, closed by this much in m."""
     result = Grasp.model_validate(
         {
             "block": {"size": (40e-3, 40e-3, 20e-3), "tissue": "icf_stable"},
-            "upper": SMALLER,
-            "lower": SMALLER,
-            "matrix": {"rows": 3, "columns": 3, "pitch": 6.5e-3, "size": 5.5e-3},
+            "upper": jaw,
+            "lower": jaw,
+            "matrix": matrix,
             "contact": {"kind": "coulomb", "friction": 0.6},
-            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]},
+            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": by, "duration": 1.0}]},
             "mesh": mesh,
             "time": {"steps": 1},
         }
     ).run()
     assert result.status == "converged"
+    return result
+
+
+def forces_of(result: Result) -> np.ndarray:
+    """Forces (jaw, row, column) in N on the taxels."""
     return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
 
 
@@ -75,6 +95,21 @@ def test_cells_that_no_plane_mirrors_or_without_lines_at_the_edges_are_seen(monk
     assert_kills(check_equal, not_mirrored=(pressed({"kind": "structured", "cells": (7, 7, 4)}),))
     monkeypatch.setattr(GraspSetup, "flats", [])
     assert_kills(check_right, without_edges=(pressed({"kind": "graded"}),))
+
+
+def check_tiny(result: Result) -> None:
+    """Taxels and the force of the jaw are those of a finer mesh."""
+    assert np.abs(forces_of(result) - FINE_TINY).max() < CONVERGED * FINE_TINY.max()
+    assert result.quantities["reaction_force"].value == pytest.approx(FINE_TINY_REACTION, rel=CONVERGED)
+
+
+@pytest.mark.slow
+def test_cells_at_the_edges_of_tiny_jaws_are_as_thin_as_these_ask(verification_record):
+    result = pressed_by_tiny_jaws({"kind": "automatic"})
+    check_tiny(result)
+    known = {"reference": "218 262 unknowns", "kind": "invariance", "mesh": "default, 90 218 unknowns", "tolerance": CONVERGED}
+    verification_record("taxels of jaws of a fifth of the block", forces_of(result), np.stack([FINE_TINY] * 2), **known)
+    assert_kills(check_tiny, cells_of_larger_jaws=(pressed_by_tiny_jaws({"kind": "graded", "edge_size": 1.6e-3}),))
 
 
 @pytest.mark.slow

@@ -34,13 +34,15 @@ def grasp_mesh(experiment: GraspSetup) -> SourcedBlock:
 def _sourced(experiment: GraspSetup, source: AnySource) -> SourcedBlock:
     """The mesh of this source between the jaws."""
     size, shapes, flats = experiment.block.size, experiment.shapes, experiment.flats
-    if isinstance(source, GradedSource):
-        return source.sourced(size, shapes, flats)
     widths = {(jaw.width, jaw.depth) for jaw in map(experiment.jaw, JAWS)}
     centred = not any(experiment.upper.offset + experiment.lower.offset)
     if isinstance(source, TetrahedraSource) and source.jaw is None and centred and len(widths) == 1 and flats:
         source = source.model_copy(update={"jaw": widths.pop()})
-    return source.sourced(size, shapes)
+    return (
+        source.sourced(size, shapes, flats)
+        if isinstance(source, (GradedSource, TetrahedraSource))
+        else source.sourced(size, shapes)
+    )
 
 
 def grasp_model(experiment: GraspSetup, sourced: SourcedBlock) -> GraspModel:

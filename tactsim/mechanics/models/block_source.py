@@ -17,6 +17,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import BlockMesh, BlockMeshSettings, MesherSettings
+from tactsim.mesh.sizing import at_jaw_edges
 from tactsim.model import FrozenModel
 from tactsim.units import Length, Positive
 
@@ -24,7 +25,10 @@ Size = tuple[float, float, float]
 TOUCHING = 1e-5
 """Distance in m below which bodies touch, where no mesh is made to follow them."""
 FULL_SIDE = 20e-3
-"""Least side in m of a block from which on the usual element sizes hold; in smaller ones they are in proportion to it."""
+"""Least side in m of a block from which on the usual element sizes hold; in smaller ones they are in proportion to it, and at the
+edges of jaws to the least side of their flats."""
+ROUND_OFF = 1e-9
+"""Relative difference of lengths that are meant to be equal."""
 GAP_SHARE = 0.125
 """Least distance of a lump from the faces, in element sizes near it, where cells are built around it."""
 
@@ -72,10 +76,17 @@ class SizedSource(MesherSettings, BlockSource):
     """Edge length at inclusions, smaller by itself at a thin wall; by default 2.6 mm, or 0.13 of the block's least side if that
     is less."""
 
-    def settings(self, size: Size) -> BlockMeshSettings:
-        """The lengths themselves in a block of this size in m."""
-        part, given = min(1.0, min(size) / FULL_SIDE), self.model_dump(exclude={"kind"}, exclude_none=True)
-        return BlockMeshSettings.model_validate({name: part * length for name, length in self.usual.items()} | given)
+    def settings(self, size: Size, flats: Sequence[Array] = ()) -> BlockMeshSettings:
+        """The lengths themselves in a block of this size in m, between jaws that have these ``flats`` (2, 2) in m inside it."""
+        part = min(1.0, min(size) / FULL_SIDE)
+        usual = {name: part * length for name, length in self.usual.items()}
+        given = self.model_dump(exclude={"kind"}, exclude_none=True)
+        settings = BlockMeshSettings.model_validate(usual | given)
+        sides = [float(side) for flat in flats for side in np.diff(flat, axis=0)[0]]
+        narrower = min([part, *(side / FULL_SIDE for side in sides)]) / part
+        if self.edge_size is not None or narrower > 1 - ROUND_OFF:
+            return settings
+        return settings.model_copy(update={"edge_size": narrower * (settings.edge_size or at_jaw_edges(settings))})
 
     def least_gap(self, size: Size) -> float:
         """Least distance in m between inclusions, and from faces, in a block of this size in m."""
@@ -87,11 +98,11 @@ class TetrahedraSource(SizedSource):
 
     kind: Literal["tetrahedra"] = "tetrahedra"
 
-    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
-        """The mesh of a block of this size in m, shipped, from the cache, or made now."""
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
+        """The mesh of a block of this size in m, shipped, from the cache, or made now; finer at the edges of narrow ``flats``."""
         from tactsim.mesh.mesh_store import stored_block_mesh
 
-        stored = stored_block_mesh(size, inclusions, self.settings(size))
+        stored = stored_block_mesh(size, inclusions, self.settings(size, flats))
         return SourcedBlock(stored.block, stored.content, stored.origin)
 
 
@@ -132,8 +143,9 @@ class GradedSource(SizedSource):
     """Edge length at the inclusion, about; three to five cells across it at least, by its size and place. By default 2 mm, or 0.1
     of the block's least side if that is less."""
     edge_size: Positive[Length] | None = None
-    """Thickness of cells at the faces, from which they grow at once; by default 1.6 mm, or 0.08 of the block's least side if that
-    is less. Where a jaw is smaller than the block, they are three quarters as thick, and thin also on both sides of its edges."""
+    """Thickness of cells at the faces, from which they grow at once; by default 1.6 mm, or 0.08 of the least side of the block
+    and of the jaws' flats if that is less. Where a jaw is smaller than the block, they are three quarters as thick, and thin also
+    on both sides of its edges."""
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0
     """By how much a cell is thicker than the one before it, nearer to a face, over that one's thickness."""
 
@@ -145,14 +157,14 @@ class GradedSource(SizedSource):
         """Which of the inclusions are of other forms, in each other's way, or below the edge of a jaw."""
         from tactsim.mesh.graded.block import graded_misfit
 
-        reason = graded_misfit(size, inclusions, flats, self.settings(size))
+        reason = graded_misfit(size, inclusions, flats, self.settings(size, flats))
         return reason and f"graded: {reason}"
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
         """The mesh of a block of this size in m around its inclusions, if any; with the edges of ``flats`` (2, 2) in m."""
         from tactsim.mesh.graded.block import graded_block
 
-        block = graded_block(size, inclusions, self.settings(size), flats)
+        block = graded_block(size, inclusions, self.settings(size, flats), flats)
         origin = "graded cells"
         if block.fewer_layers:
             origin += f", layers fewer than usual around inclusions close to each other or to a face: {block.fewer_layers}"

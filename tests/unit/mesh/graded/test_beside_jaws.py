@@ -9,7 +9,7 @@ import pytest
 from lumps import assert_sound, same_mirrored
 
 from tactsim.errors import InputError
-from tactsim.mechanics.models.block_source import GradedSource
+from tactsim.mechanics.models.block_source import GradedSource, TetrahedraSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.graded.beside_jaws import THINNER, footprint_of
 from tactsim.mesh.graded.block import graded_block, graded_misfit
@@ -140,6 +140,15 @@ def test_a_small_block_has_the_cells_of_a_large_one(name, flats):
     small = GradedSource().sourced(tuple(0.1 * np.array(SIZE)), tenth, [0.1 * flat for flat in flats]).block.mesh
     np.testing.assert_array_equal(small.elements, large.elements)
     np.testing.assert_allclose(small.nodes, 0.1 * large.nodes, rtol=0, atol=1e-9)
+
+
+def test_cells_at_the_edges_of_narrow_flats_follow_these_and_not_what_a_case_gives():
+    usual, narrow = GradedSource().settings(SIZE, [NARROW]), GradedSource().settings(SIZE, [NARROW, flat((16, 24), (10, 30))])
+    assert (usual.edge_size, usual.size) == (1.6e-3, 6e-3)
+    assert (narrow.edge_size, narrow.size) == (pytest.approx(0.64e-3), 6e-3)
+    assert GradedSource(edge_size="1.2 mm").settings(SIZE, [flat((16, 24), (10, 30))]).edge_size == 1.2e-3
+    tetrahedra = TetrahedraSource(size="5 mm").settings(SIZE, [flat((16, 24), (10, 30))])
+    assert tetrahedra.edge_size == pytest.approx(0.4 * 2 / 3 * 5e-3)
 
 
 def _tenth(body):
