@@ -13,7 +13,7 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, LoadedTaxels, PressureScale
+from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, LoadedTaxels, PressureScale, drawn_millimetre
 from tactsim.experiments.grasp.figures.viewed import outline, true_bodies
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.solid import Solid
@@ -31,7 +31,8 @@ FITTING, LARGEST, SMALLEST = 30.0, 9.0, 3.0
 ROUND_OFF = 1e-9
 """Relative distance from the upper face of a node that lies on it."""
 BESIDE = 0.6
-"""Distance in mm of the names of rows and columns from the jaw."""
+"""Distance of the names of rows and columns from the jaw, in `drawn_millimetre`; so is that of the axes, `AROUND`."""
+AROUND = 1.0
 
 
 def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
@@ -110,7 +111,7 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
         axis.text(x, y - 0.06 * size, f"{force} N", va="top", fontsize=0.72 * large, **style)
     axis.add_collection(PatchCollection(squares, match_original=True, zorder=2))  # thousands one by one take a minute
     named: dict[str, Any] = {"fontsize": 7, "color": "#57606a"}
-    right, back = _extent(grasp.scene, side)[1] + BESIDE
+    right, back = _extent(grasp.scene, side)[1] + BESIDE * drawn_millimetre(grasp.scene.size)
     for number in _named(layout.rows):
         axis.text(right, rows[number - 1].mean(), f"row {number}", ha="left", va="center", **named)
     for number in _named(layout.columns):
@@ -143,8 +144,9 @@ def _draw_surroundings(axis: Axes, scene: GraspScene, side: str, bodies: Sequenc
     axis.add_patch(face)
     axis.add_patch(Rectangle((0, 0), size[0], size[1], fill=False, edgecolor="#57606a", linewidth=0.8, linestyle=(0, (4, 3))))
     low, high = _extent(scene, side)
-    room = 0.11 * (high[0] - low[0])
-    axis.set(xlim=(low[0] - 1.0, high[0] + BESIDE + room), ylim=(low[1] - 1.0, high[1] + BESIDE + room / 2))
+    room, unit = 0.11 * (high[0] - low[0]), drawn_millimetre(scene.size)
+    (left, front), (right, back) = low - AROUND * unit, high + BESIDE * unit
+    axis.set(xlim=(left, right + room), ylim=(front, back + room / 2))
     axis.set_xticks([tick for tick in axis.get_xticks() if low[0] <= tick <= high[0]])
     axis.set_yticks([tick for tick in axis.get_yticks() if low[1] <= tick <= high[1]])
     for body in bodies:

@@ -21,9 +21,14 @@ TITLE, WHERE = "Grasp", "; the last accepted step is shown"
 """Title of a grasp without one, and what is said of one that did not end as it should."""
 LETTERS = {"upper": "U", "lower": "L"}
 """How the thesis's Fig. 6.3 calls the taxels of each jaw."""
-
-
 TAXEL_COLOUR = "#e69f00"
+USUAL_SIDE = 40e-3
+"""Longest side in m of a block in whose pictures lengths are drawn as they are given."""
+
+
+def drawn_millimetre(size: Array) -> float:
+    """Length in mm that is drawn for a millimetre around a block of sides (3,) in m: in proportion to its longest one."""
+    return float(np.max(size)) / USUAL_SIDE
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from matplotlib.collections import LineCollection, PolyCollection
 from matplotlib.tri import Triangulation
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, ending, inclusions_of, moment_of
+from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, drawn_millimetre, ending, inclusions_of, moment_of
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, robust_limits, scale_of, with_minus
@@ -20,9 +20,9 @@ from tactsim.results import FieldFrame, Result
 from tactsim.results.fields import CORNER_PRESSURE, PRESSURE
 
 JAW_SHOWN = 2.6
-"""Height in mm of the jaws in the picture."""
+"""Height of the jaws in the picture, in `drawn_millimetre`."""
 TAXEL_SHOWN = 0.55
-"""Height in mm of a taxel's mark in the jaw's face."""
+"""Height of a taxel's mark in the jaw's face, in `drawn_millimetre`."""
 LONGER = 1.2
 """An inclusion is cut across the horizontal axis along which it is this much longer than along the other."""
 GRID = 250
@@ -134,9 +134,9 @@ def _draw_outlines(axis: Axes, cut: PlaneCut, result: Result) -> None:
 def _window(cut: PlaneCut, scene: GraspScene) -> tuple[tuple[float, float], tuple[float, float]]:
     """Limits in mm of the picture."""
     low, high = 1e3 * cut.triangles.min(axis=(0, 1)), 1e3 * cut.triangles.max(axis=(0, 1))
-    margin = 0.03 * (high[0] - low[0])
-    top = max(high[1], 1e3 * scene.place("upper")[2]) + JAW_SHOWN
-    bottom = min(low[1], 1e3 * scene.place("lower")[2]) - JAW_SHOWN
+    margin, shown = 0.03 * (high[0] - low[0]), JAW_SHOWN * drawn_millimetre(scene.size)
+    top = max(high[1], 1e3 * scene.place("upper")[2]) + shown
+    bottom = min(low[1], 1e3 * scene.place("lower")[2]) - shown
     return (float(low[0] - margin), float(high[0] + margin)), (float(bottom), float(top))
 
 
@@ -155,17 +155,18 @@ def _draw_jaw(
     axis.contourf(along, height, distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
     axis.contour(along, height, distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)
     _draw_taxels(axis, scene, side, plane)
-    edge = limits[1][1] - 0.3 if side == "upper" else limits[1][0] + 0.3
+    unit = drawn_millimetre(scene.size)
+    edge = limits[1][1] - 0.3 * unit if side == "upper" else limits[1][0] + 0.3 * unit
     where: dict[str, Any] = {"ha": "left", "va": "top" if side == "upper" else "bottom"}
     left = 1e3 * (place[1 - across] - (jaw.depth if across == 0 else jaw.width) / 2)
-    axis.text(max(left, limits[0][0]) + 0.6, edge, f"{side} jaw", fontsize=8, zorder=5, **where)
+    axis.text(max(left, limits[0][0]) + 0.6 * unit, edge, f"{side} jaw", fontsize=8, zorder=5, **where)
 
 
 def _draw_taxels(axis: Axes, scene: GraspScene, side: str, plane: CuttingPlane) -> None:
     """Marks of the taxels of the row or column that the plane passes, named as in Fig. 6.3 of the thesis."""
     across, jaw, place = plane.across, scene.jaws[side], scene.place(side)
     fixed = (plane.level - place[across]) / jaw.rotation[across, across]
-    passed = scene.matrix.borders("xy"[across])
+    passed, height = scene.matrix.borders("xy"[across]), TAXEL_SHOWN * drawn_millimetre(scene.size)
     hit = np.flatnonzero((passed[:, 0] <= fixed) & (fixed <= passed[:, 1]))
     for index in hit:
         borders = scene.matrix.borders("yx"[across])
@@ -173,12 +174,12 @@ def _draw_taxels(axis: Axes, scene: GraspScene, side: str, plane: CuttingPlane) 
         for number, (low, high) in enumerate(borders):
             corners = np.zeros((3, 4))
             corners[1 - across], corners[across] = [low, high, high, low], fixed
-            corners[2] = np.array([0.0, 0.0, 1e-3, 1e-3]) * TAXEL_SHOWN
+            corners[2] = np.array([0.0, 0.0, 1e-3, 1e-3]) * height
             shown = 1e3 * (jaw.rotation @ corners + place[:, None])
             axis.fill(shown[1 - across], shown[2], facecolor=TAXEL_COLOUR, edgecolor="#30363d", linewidth=0.5, zorder=4)
             if number % every:
                 continue
             row, column = (index, number) if across == 1 else (number, index)
             above: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7, "zorder": 5}
-            normal = 2.2 * TAXEL_SHOWN * jaw.rotation[2, 2]
+            normal = 2.2 * height * jaw.rotation[2, 2]
             axis.text(shown[1 - across].mean(), shown[2].mean() + normal, f"{LETTERS[side]}{row + 1},{column + 1}", **above)

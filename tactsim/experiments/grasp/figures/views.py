@@ -18,7 +18,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LETTERS
+from tactsim.experiments.grasp.figures.parts import LETTERS, drawn_millimetre
 from tactsim.experiments.grasp.figures.taxel_numbers import draw_taxel_numbers
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies, outline
 from tactsim.interfaces.taxel_layout import JAWS
@@ -27,10 +27,8 @@ from tactsim.plotting.canvas import PRESSURE_COLOURS, despined, result_figure, s
 from tactsim.results import Result
 
 VIEWS = "views.png"
-JAW = 1.2
-"""Thickness in mm with which a jaw is drawn."""
-ROOM = 1.0
-"""Around the drawing in mm."""
+JAW, ROOM = 1.2, 1.0
+"""Thickness with which a jaw is drawn, and room around the drawing, in `drawn_millimetre`."""
 MOST_INTERVALS = 5
 """Between the ticks of an axis or of the colours."""
 REGION_DASHES: Any = (0, (1.5, 1.5))
@@ -92,7 +90,7 @@ def views_figure(result: Result, grasp: ViewedGrasp) -> Figure:
     front = View(pressures.front, 1, 0, 2, layout.rows, "front view: sums over the rows")
     left = View(pressures.left, 0, 1, 2, layout.columns, "left view: sums over the columns")
     top = View(pressures.top, 2, 0, 1, len(JAWS), "top view: sums of both jaws")
-    x, y, z = 1e3 * grasp.scene.size
+    x, y, z = 1e3 * grasp.scene.size / drawn_millimetre(grasp.scene.size)
     size = (10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
     with result_figure(result, size, "Three views of the grasp") as figure:
         axes: Any = figure.subplots(2, 2, width_ratios=(y, x), height_ratios=(y + 2 * ROOM, z + 2 * JAW + 2 * ROOM))
@@ -129,9 +127,10 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
         axis.contour(first, second, distance, levels=[0.0], colors=["w"], linewidths=2.6, zorder=5)
         axis.contour(first, second, distance, levels=[0.0], colors=["k"], linewidths=1.1, linestyles="--", zorder=6)
     _draw_estimates(axis, view, grasp)
-    beyond = JAW + ROOM if view.away != 2 else ROOM
+    unit = drawn_millimetre(grasp.scene.size)
+    room, beyond = ROOM * unit, (JAW + ROOM if view.away != 2 else ROOM) * unit
     low_x, high_x = min(0.0, extent[0]), max(size[view.horizontal], extent[1])
-    axis.set(xlim=(low_x - ROOM, high_x + ROOM), ylim=(-beyond, size[view.vertical] + beyond), aspect="equal")
+    axis.set(xlim=(low_x - room, high_x + room), ylim=(-beyond, size[view.vertical] + beyond), aspect="equal")
     axis.set(
         xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm", ylabel=f"{'xyz'[view.vertical]} in mm (undeformed)"
     )
@@ -199,12 +198,13 @@ def _draw_taxels(axis: Axes, grasp: ViewedGrasp) -> None:
     for chosen, hatch in ((valid.ravel(), None), (~valid.ravel(), "xxx")):
         axis.add_collection(PatchCollection([squares[k] for k in np.flatnonzero(chosen)], hatch=hatch, **none))
     if max(valid.shape) <= MOST_NAMED:
+        beside = 0.8 * drawn_millimetre(grasp.scene.size)
         named: dict[str, Any] = {"fontsize": 7, "color": GREY, "zorder": 4}
         named["bbox"] = {"boxstyle": "round,pad=0.1", "facecolor": "w", "edgecolor": "none", "alpha": 0.8}
         for number, middle in enumerate(rows.mean(axis=1), 1):
-            axis.text(columns[-1, 1] + 0.8, middle, f"row {number}", ha="left", va="center", **named)
+            axis.text(columns[-1, 1] + beside, middle, f"row {number}", ha="left", va="center", **named)
         for number, middle in enumerate(columns.mean(axis=1), 1):
-            axis.text(middle, rows[-1, 1] + 0.8, f"col. {number}", ha="center", va="bottom", **named)
+            axis.text(middle, rows[-1, 1] + beside, f"col. {number}", ha="center", va="bottom", **named)
 
 
 def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
@@ -213,16 +213,18 @@ def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     sums, missing = grasp.signal.sum(axis=summed), (~grasp.valid).sum(axis=summed)
     norm = Normalize(0.0, max(float(view.image.max()), 1e-12))
     colours, borders = colormaps[PRESSURE_COLOURS], grasp.scene.borders(along)
+    unit = drawn_millimetre(grasp.scene.size)
+    thick, apart = JAW * unit, 0.1 * unit
     for jaw, side in enumerate(JAWS):
-        bottom = 1e3 * grasp.scene.size[2] if side == "upper" else -JAW
+        bottom = 1e3 * grasp.scene.size[2] if side == "upper" else -thick
         for number, (low, high) in enumerate(borders):
             shade = colours(float(norm(sums[jaw, number])))
             hatch = None if missing[jaw, number] == 0 else "xxx"
             axis.add_patch(
-                Rectangle((low, bottom), high - low, JAW, facecolor=shade, edgecolor=INK, linewidth=0.6, zorder=4, hatch=hatch)
+                Rectangle((low, bottom), high - low, thick, facecolor=shade, edgecolor=INK, linewidth=0.6, zorder=4, hatch=hatch)
             )
             if len(borders) <= MOST_NAMED:
-                middle = (low + high) / 2, bottom + JAW + 0.1 if side == "upper" else bottom - 0.1
+                middle = (low + high) / 2, bottom + thick + apart if side == "upper" else bottom - apart
                 align = "bottom" if side == "upper" else "top"
                 axis.text(*middle, f"{LETTERS[side]}{number + 1}", ha="center", va=align, fontsize=6.5, color=GREY)
 

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from drawn import text_of
 from scenes import Unrendered, grasp_scene, unmarked_figures
+from solids import assert_close
 
 from tactsim.cli.figures.result_figures import rendered_figures
 from tactsim.errors import TactsimError
@@ -185,6 +186,18 @@ def test_maps_put_row_1_in_front_and_column_1_at_the_smallest_x():
     assert "0.500 kPa" in {text.get_text() for text in axes[1].texts}
     squares = [next(c for c in axis.collections if len(c.get_facecolor()) == 6) for axis in axes[:2]]
     assert tuple(squares[0].get_facecolor()[0]) != tuple(squares[1].get_facecolor()[0])
+
+
+def test_a_small_grasp_is_drawn_as_a_large_one():
+    pictures = []
+    for part in (1.0, 0.1):
+        layout = TaxelLayout(pitch=part * 11e-3, size=part * 9e-3)
+        jaw = {name: part * length for name, length in {"width": 50e-3, "depth": 50e-3, "fillet": 2e-3}.items()}
+        scene = grasp_scene(part * np.array(SIZE), layout, closing=part * CLOSING, **jaw)
+        axis = maps_figure(replace(made_up(layout=layout), scene=scene)).axes[0]
+        named = next(text for text in axis.texts if text.get_text() == "row 1")
+        pictures.append([*axis.get_xlim(), *axis.get_ylim(), *named.get_position()])
+    assert_close(pictures[1], 0.1 * np.array(pictures[0]), 1e-12)
 
 
 @pytest.mark.parametrize("layout", [TaxelLayout(), TaxelLayout(rows=4, columns=4, pitch=9e-3, size=8e-3)])
