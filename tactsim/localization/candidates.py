@@ -15,6 +15,8 @@ from tactsim.errors import InputError
 from tactsim.interfaces.readings import TissueResponse
 from tactsim.units import Length, Positive, format_quantity
 
+FULL_SIDE = 20e-3
+"""Least side in m of a block from which on the lengths below are as they stand; in smaller ones they are in proportion to it."""
 LINE_STEP = 1e-3
 """Distance in m of the points on the centre line of a tube, and of parallel centre lines."""
 ANGLES = 12
@@ -25,6 +27,8 @@ SAME_SPREAD = float(np.sqrt(5 / 4))
 """Radius of the ball over that of the circle with the same second moment along a diameter: r^2 / 5 and r^2 / 4."""
 SAME = 1e-9
 """Largest relative difference of equal radii."""
+BALL_RADII, TUBE_RADII, GAP = (2e-3, 7e-3), (2e-3, 5e-3), 0.5e-3
+"""Radii in m between which balls and tubes are sought, and their distance from the faces."""
 RADIUS_STEP = 1e-3
 """Of balls and tubes that are tried, in m."""
 
@@ -45,9 +49,26 @@ def no_body(kind: str) -> InputError:
     return InputError(f"no {kind} of the tabulated radii fits into the block; take smaller radii or a smaller gap")
 
 
-def radius_steps(limits: tuple[float, float]) -> list[float]:
-    """Radii in m from the least to the largest, two at least, in steps of about a millimetre."""
-    return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / RADIUS_STEP) + 1)))
+def part_of_usual(size: Sequence[float] | Array) -> float:
+    """What usual lengths are multiplied by in a block of this size (3,) in m: 1 from `FULL_SIDE` on."""
+    return min(1.0, float(min(size)) / FULL_SIDE)
+
+
+def limits_in(
+    size: Sequence[float] | Array, given: tuple[float, float] | None, usual: tuple[float, float]
+) -> tuple[float, float]:
+    """Radii in m between which is sought in a block of this size (3,) in m: those given, or the usual ones."""
+    return given or (part_of_usual(size) * usual[0], part_of_usual(size) * usual[1])
+
+
+def gap_in(size: Sequence[float] | Array, given: float | None) -> float:
+    """Least distance in m from the faces of a block of this size (3,) in m: that given, or the usual one."""
+    return part_of_usual(size) * GAP if given is None else given
+
+
+def radius_steps(limits: tuple[float, float], size: Sequence[float] | Array) -> list[float]:
+    """Radii in m from the least to the largest, two at least, in steps of about a millimetre or less in a small block."""
+    return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / (part_of_usual(size) * RADIUS_STEP)) + 1)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -134,7 +155,7 @@ def tube_candidates(
     .. math:: \Delta F = \pi r^2 \int S(x(l)) \Big/ \tfrac{4}{3} \pi r'^3 \, dl
 
     as the ball's change over its volume is the density averaged over the ball. A tube that ends is a quarter of the way, half
-    or three quarters through the block, from either side.
+    or three quarters through the block, from either side. ``spacing`` in m is that of lines in a block that is not small.
 
     Raises
     ------
@@ -142,25 +163,27 @@ def tube_candidates(
         If none fits, or all radii lie beyond those of the table.
     """
     heights = response.axes[2]
-    lines = _lines(size, spacing)
+    lines = _lines(size, part_of_usual(size) * spacing)
     spans = [(0.0, 1.0)] + [span for cut in CUTS for span in ((0.0, cut), (cut, 1.0)) if closed]
     across = lines[1] - lines[0]
     firsts, lasts = (np.concatenate([lines[0] + end * across for end in ends]) for ends in zip(*spans, strict=True))
-    table = _line_integrals(response, firsts, lasts)
+    table = _line_integrals(response, firsts, lasts, part_of_usual(size) * LINE_STEP)
     parts = []
     for k in _tabulated(response, radii, SAME_SPREAD):
         radius = float(response.radii[k]) / SAME_SPREAD
         level = np.flatnonzero(np.minimum(heights, size[2] - heights) >= radius + gap)
         inside = _beside(firsts, lasts, size) >= radius + gap
         factor = np.pi * radius**2 / (4 / 3 * np.pi * response.radii[k] ** 3)
+        if not (inside.any() and len(level)):
+            continue
         plane = response.values[k][:, :, level].reshape(len(response.axes[0]) * len(response.axes[1]), -1)
         signals = factor * (table[inside] @ plane).reshape(int(inside.sum()) * len(level), -1)
         z = np.tile(heights[level], int(inside.sum()))
         placed = [np.column_stack([np.repeat(points[inside], len(level), axis=0), z]) for points in (firsts, lasts)]
         parts.append((*placed, np.full(len(z), radius), signals))
-    begins, ends, sizes, responses = (np.concatenate(part) for part in zip(*parts, strict=True))
-    if not len(sizes):
+    if not parts:
         raise no_body("tube")
+    begins, ends, sizes, responses = (np.concatenate(part) for part in zip(*parts, strict=True))
     return Candidates("tube", begins, ends, sizes, responses)
 
 
@@ -205,7 +228,7 @@ def _crossing(point: Array, along: Array, size: Array) -> tuple[Array, Array] | 
             continue
         both = np.sort(np.array([-point[axis], size[axis] - point[axis]]) / along[axis])
         low, high = max(low, float(both[0])), min(high, float(both[1]))
-    return (point + low * along, point + high * along) if high - low > LINE_STEP else None
+    return (point + low * along, point + high * along) if high - low > part_of_usual(size) * LINE_STEP else None
 
 
 def _beside(firsts: Array, lasts: Array, size: Array) -> Array:
@@ -216,9 +239,10 @@ def _beside(firsts: Array, lasts: Array, size: Array) -> Array:
     return np.abs(away[..., 0] * along[:, None, 1] - away[..., 1] * along[:, None, 0]).min(axis=1)
 
 
-def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array) -> scipy.sparse.csr_array:
-    """Weights in m (lines, nx ny) whose product with values at the centres in plan is their integral along each line."""
-    counts = np.maximum(1, np.ceil(np.linalg.norm(lasts - firsts, axis=1) / LINE_STEP).astype(int))
+def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array, longest: float) -> scipy.sparse.csr_array:
+    """Weights in m (lines, nx ny) whose product with values at the centres in plan is their integral along each line, of which
+    one point stands for ``longest`` in m at most."""
+    counts = np.maximum(1, np.ceil(np.linalg.norm(lasts - firsts, axis=1) / longest).astype(int))
     line = np.repeat(np.arange(len(counts)), counts)
     share = (np.arange(counts.sum()) - np.repeat(np.cumsum(counts) - counts, counts) + 0.5) / counts[line]
     points = firsts[line] + share[:, None] * (lasts - firsts)[line]

@@ -15,8 +15,8 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.deadline import check_time
-from tactsim.errors import InputError, InvalidQuantity
-from tactsim.units import format_quantity
+from tactsim.errors import InvalidQuantity
+from tactsim.localization.candidates import part_of_usual
 
 RIGID_CONTRAST = 2.5
 """Contrast of a small rigid ball in incompressible tissue."""
@@ -94,22 +94,15 @@ class LumpResponse:
             raise InvalidQuantity(f"a ball outside the table of the response: {error}") from None
 
 
-def fitting_radii(radii: Array, size: Sequence[float]) -> Array:
-    """Those of ascending radii in m whose balls fit into a block of this size (3,) in m.
+def tabulated_radii(usual: Array, size: Sequence[float]) -> Array:
+    """Ascending radii in m, usual but for small blocks, of the balls that fit into a block of this size (3,) in m."""
+    radii = part_of_usual(size) * usual
+    return np.asarray(radii[min(size) > 2 * radii])
 
-    Raises
-    ------
-    InputError
-        If none fits.
-    """
-    fitting = radii[min(size) > 2 * radii]
-    if not len(fitting):
-        side, least = format_quantity(min(size), "m"), format_quantity(2 * float(radii[0]), "m")
-        raise InputError(
-            f"the block is {side} along its shortest side, and the smallest ball whose response is computed is {least} wide; "
-            "needed: a thicker block"
-        )
-    return fitting
+
+def spacing_of_centres(usual: float, size: Sequence[float], most: int) -> float:
+    """Distance in m of tabulated centres in a block of this size (3,) in m: usual but for small blocks, and at most so many."""
+    return max(part_of_usual(size) * usual, float(np.prod(size) / most) ** (1 / 3))
 
 
 def eshelby_contrast(shear_ratio: Array) -> Array:

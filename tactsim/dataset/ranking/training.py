@@ -14,6 +14,7 @@ from tactsim.array import Array
 from tactsim.dataset.ranking.samples import JudgedSamples
 from tactsim.errors import InputError
 from tactsim.interfaces.estimate import LEVEL
+from tactsim.localization.candidates import BALL_RADII, gap_in, limits_in
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.networks import OUTPUTS, LearnedWeights, Network, inputs
@@ -114,9 +115,9 @@ def _mirrored(examples: Examples, samples: JudgedSamples) -> Examples:
 def _fast(samples: JudgedSamples, response: LumpResponse, generator: np.random.Generator) -> Examples:
     """Grasps of the fast forward model at random closings, with the errors that the model-based estimator expects."""
     errors, size = ModelBasedEstimator(), samples.block_size
-    radii = generator.uniform(*errors.radii, FAST)
+    radii = generator.uniform(*limits_in(size, errors.radii, BALL_RADII), FAST)
     low, high = (np.array([f(axis) for axis in response.axes]) for f in (np.min, np.max))
-    reach = (radii + errors.gap)[:, None]
+    reach = (radii + gap_in(size, errors.gap))[:, None]
     centers = generator.uniform(np.maximum(reach, low), np.minimum(size - reach, high))
     plain = samples.plain
     closings = generator.uniform(min(t.closing for t in samples.truths), plain.closings[-1], FAST)

@@ -17,7 +17,8 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.lump_response import LumpResponse, eshelby_contrast, fitting_radii
+from tactsim.localization.candidates import part_of_usual
+from tactsim.localization.lump_response import LumpResponse, eshelby_contrast, spacing_of_centres, tabulated_radii
 from tactsim.materials.library import named_material
 from tactsim.mechanics.paths.loading import DisplacementLoading
 from tactsim.progress import elapsed_time
@@ -27,14 +28,14 @@ from tactsim.units import Force, Length, NonNegative, Positive, format_quantity
 
 RADII = np.array([1.5e-3, 2.5e-3, 3.5e-3, 5e-3, 6.5e-3, 8e-3])
 """Radii in m of the tabulated balls."""
-SPACING = 2e-3
-"""Of their tabulated centres in m."""
+SPACING, MOST_CENTRES = 2e-3, 12_500
+"""Of their tabulated centres in m, and about how many there are at most."""
 ROWS_AT_ONCE = 32
 """Taxels whose densities are turned into responses together, which bounds the memory."""
 AWAY = (0.0, 0.25, 0.5)
 """Places in plan, each way from the middle, in pitches of the coarsest matrix."""
 ROOM = 0.5e-3
-"""Least distance of a ball from the faces of the block, in m."""
+"""Least distance of a ball from the faces of the block in m; all these lengths are less in a small block."""
 NOISES = ("same", "by_area")
 
 
@@ -153,7 +154,7 @@ class Detectability(Experiment):
             centers = np.column_stack([plan, np.full(len(plan), z)])
             signals = np.stack([response.signal(centers, np.full(len(plan), radius)) for radius in response.radii], axis=1)
             densities = np.linalg.norm(signals.reshape(len(plan), len(response.radii), -1), axis=2) / volumes
-            most = min(below, height - below) - ROOM
+            most = min(below, height - below) - part_of_usual(self.grasp.block.size) * ROOM
             sought = {"contrast": contrast, "sigma": sigma, "threshold": threshold, "wanted": self.probability}
             smallest.append(smallest_radius(densities, response.radii, most, **sought))
         return smallest
@@ -205,21 +206,15 @@ class Detectability(Experiment):
 
 
 def coarse_response(setup: GraspSetup) -> LumpResponse:
-    """The response of the taxels of a grasp on a coarse grid of centres and radii.
-
-    Raises
-    ------
-    InputError
-        If no tabulated ball fits into the block.
-    """
+    """The response of the taxels of a grasp on a coarse grid of centres and radii."""
     from tactsim.experiments.localization.lump_sensitivity import sensitivity
 
     size = setup.block.size
-    radii = fitting_radii(RADII, size)
+    radii = tabulated_radii(RADII, size)
     adjoint = sensitivity(setup)
     densities = adjoint.densities
     flat = densities.reshape(-1, densities.shape[-1])
-    spacing, tables = min(SPACING, min(size) / 5), []
+    spacing, tables = spacing_of_centres(SPACING, size, MOST_CENTRES), []
     for begin in range(0, len(flat), ROWS_AT_ONCE):
         part = flat[begin : begin + ROWS_AT_ONCE][:, None, None]
         tables.append(LumpResponse.of_density(adjoint.places, adjoint.volumes, part, size=size, radii=radii, spacing=spacing))

@@ -26,16 +26,16 @@ from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.solvers.linear import direct_solver
 from tactsim.fem.solvers.pardiso import SymmetricPardiso
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.localization.lump_response import LumpResponse, fitting_radii
+from tactsim.localization.lump_response import LumpResponse, spacing_of_centres, tabulated_radii
 from tactsim.mechanics.models.block_model import CLOSING, GraspModel
 from tactsim.mechanics.models.block_source import StructuredSource
 
 CELLS = (14, 14, 8)
 """Cells of the block, each of six tetrahedra: 45 000 unknowns."""
 RADII = np.linspace(1.5e-3, 8e-3, 14)
-"""Radii in m of the tabulated balls."""
-SPACING = 1e-3
-"""Of the tabulated centres in m."""
+"""Radii in m of the tabulated balls, less in a small block (``localization.candidates.part_of_usual``)."""
+SPACING, MOST_CENTRES = 1e-3, 100_000
+"""Of the tabulated centres in m, less in a small block, and about how many there are at most: 22 MB for a taxel of both jaws."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,15 +55,20 @@ def lump_response(setup: GraspSetup) -> LumpResponse:
     Raises
     ------
     InputError
-        If the grasp has inclusions, or no tabulated ball fits into its block.
+        If the grasp has inclusions.
     ConvergenceError
         If the plain tissue cannot be grasped.
     """
     size = setup.block.size
-    radii = fitting_radii(RADII, size)
+    radii = tabulated_radii(RADII, size)
     adjoint = sensitivity(setup)
     return LumpResponse.of_density(
-        adjoint.places, adjoint.volumes, adjoint.densities, size=size, radii=radii, spacing=min(SPACING, min(size) / 10)
+        adjoint.places,
+        adjoint.volumes,
+        adjoint.densities,
+        size=size,
+        radii=radii,
+        spacing=spacing_of_centres(SPACING, size, MOST_CENTRES),
     )
 
 

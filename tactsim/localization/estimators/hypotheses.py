@@ -15,7 +15,17 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import Readings, TissueResponse
-from tactsim.localization.candidates import Candidates, RadiusLimits, ball_candidates, radius_steps, tube_candidates
+from tactsim.localization.candidates import (
+    BALL_RADII,
+    TUBE_RADII,
+    Candidates,
+    RadiusLimits,
+    ball_candidates,
+    gap_in,
+    limits_in,
+    radius_steps,
+    tube_candidates,
+)
 from tactsim.localization.evidence import Change, Explanation
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
@@ -66,12 +76,14 @@ class HypothesesEstimator(Estimator):
     kind: Literal["hypotheses"] = "hypotheses"
     classes: Annotated[tuple[ClassName, ...], Field(min_length=1)] = ("lump", "two_lumps", "artery", "two_arteries")
     """Classes that are considered."""
-    radii: RadiusLimits = (2e-3, 7e-3)
-    """Least and largest radius of a lump."""
-    tube_radii: RadiusLimits = (2e-3, 5e-3)
-    """Least and largest outer radius of an artery."""
-    gap: NonNegative[Length] = 0.5e-3
-    """Least distance of a body from the faces of the block that it does not leave through."""
+    radii: RadiusLimits | None = None
+    """Least and largest radius of a lump; by default 2 and 7 mm, in a block thinner than 20 mm 0.1 and 0.35 of its least side."""
+    tube_radii: RadiusLimits | None = None
+    """Least and largest outer radius of an artery; by default 2 and 5 mm, in a block thinner than 20 mm 0.1 and 0.25 of
+    its least side."""
+    gap: NonNegative[Length] | None = None
+    """Least distance of a body from the faces of the block that it does not leave through; by default 0.5 mm, in a block
+    thinner than 20 mm 0.025 of its least side."""
     contrast_spread: Positive[float] = 5.0
     """Prior standard deviation of the contrast."""
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.2
@@ -111,8 +123,9 @@ class HypothesesEstimator(Estimator):
         values, priors = readings.difference.ravel(), self._priors(readings)
         if any(without_error(values, errors) for errors in priors):
             return Estimate(False, (), UNCHANGED, 0.0, self._probabilities({"none": 0.0}))
-        balls = ball_candidates(readings.response, readings.block_size, radius_steps(self.radii), gap=self.gap).signals
-        fits = [fitted(balls, values, errors, self.contrast_spread) for errors in priors]
+        balls, *_ = self._bodies("lump", readings.response, readings.block_size)
+        assert balls is not None  # only the few of a pair may be missing
+        fits = [fitted(balls.signals, values, errors, self.contrast_spread) for errors in priors]
         explained = {str(name): self._explained_by(name, fits, readings.response, readings.block_size) for name in self.classes}
         densities = {name: [log_density for log_density, *_ in each] for name, each in explained.items()}
         densities["none"] = [fit.nothing for fit in fits]
@@ -162,18 +175,22 @@ class HypothesesEstimator(Estimator):
 
     def _bodies(self, name: str, response: TissueResponse, size: Array) -> tuple[Candidates, Candidates | None]:
         """The bodies of a class, and for pairs a few of them."""
-        balls, tubes = radius_steps(self.radii), radius_steps(self.tube_radii)
+        balls, tubes = (
+            radius_steps(limits_in(size, given, usual), size)
+            for given, usual in ((self.radii, BALL_RADII), (self.tube_radii, TUBE_RADII))
+        )
+        gap = gap_in(size, self.gap)
         if name == "lump":
-            return ball_candidates(response, size, balls, gap=self.gap), None
+            return ball_candidates(response, size, balls, gap=gap), None
         if name == "two_lumps":
-            few = ball_candidates(response, size, balls[1::2], gap=self.gap, every=COARSE)
-            return ball_candidates(response, size, balls, gap=self.gap), few
+            few = ball_candidates(response, size, balls[1::2], gap=gap, every=COARSE)
+            return ball_candidates(response, size, balls, gap=gap), few
         if name == "artery":
-            return tube_candidates(response, size, tubes, gap=self.gap), None
-        few = tube_candidates(response, size, tubes[1::2], gap=self.gap, closed=False, spacing=COARSE_SPACING)
+            return tube_candidates(response, size, tubes, gap=gap), None
+        few = tube_candidates(response, size, tubes[1::2], gap=gap, closed=False, spacing=COARSE_SPACING)
         lower = few.begins[:, 2]
         kept = few.chosen(np.isin(lower, np.unique(lower)[::COARSE]))
-        return tube_candidates(response, size, tubes, gap=self.gap, closed=False, spacing=FINE_SPACING), kept
+        return tube_candidates(response, size, tubes, gap=gap, closed=False, spacing=FINE_SPACING), kept
 
     def _prior(self, name: str) -> float:
         """Log prior probability of a class."""

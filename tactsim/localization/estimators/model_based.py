@@ -13,7 +13,17 @@ from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings, TissueResponse
-from tactsim.localization.candidates import RadiusLimits, ball_candidates, centres_and_room, no_body, radius_steps, untabulated
+from tactsim.localization.candidates import (
+    BALL_RADII,
+    RadiusLimits,
+    ball_candidates,
+    centres_and_room,
+    gap_in,
+    limits_in,
+    no_body,
+    radius_steps,
+    untabulated,
+)
 from tactsim.localization.evidence import Change, nothing
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
@@ -77,10 +87,11 @@ class ModelBasedEstimator(Estimator):
 
     needs_response: ClassVar[bool] = True
     kind: Literal["model_based"] = "model_based"
-    radii: RadiusLimits = (2e-3, 7e-3)
-    """Least and largest radius."""
-    gap: NonNegative[Length] = 0.5e-3
-    """Least distance of the ball from the faces of the block."""
+    radii: RadiusLimits | None = None
+    """Least and largest radius; by default 2 and 7 mm, in a block thinner than 20 mm 0.1 and 0.35 of its least side."""
+    gap: NonNegative[Length] | None = None
+    """Least distance of the ball from the faces of the block; by default 0.5 mm, in a block thinner than 20 mm
+    0.025 of its least side."""
     contrast_spread: Positive[float] = 5.0
     """Standard deviation of the contrast beforehand; 5/2 is a small rigid ball, large ones act several times more."""
     model_error: Annotated[float, Field(ge=0, le=1)] = 0.35
@@ -156,12 +167,12 @@ class ModelBasedEstimator(Estimator):
         response, size, difference = readings.response, readings.block_size, readings.difference
         if self.second == 0 or response is None or difference is None:
             return None
-        radii = radius_steps(self.radii)
+        radii, gap = radius_steps(limits_in(size, self.radii, BALL_RADII), size), gap_in(size, self.gap)
         fine, coarse = (
             replace(balls, signals=whitened(fit.factor * balls.signals, fit.covariance))
             for balls in (
-                ball_candidates(response, size, radii, gap=self.gap, every=EVERY),
-                ball_candidates(response, size, radii[1::2], gap=self.gap, every=COARSE),
+                ball_candidates(response, size, radii, gap=gap, every=EVERY),
+                ball_candidates(response, size, radii[1::2], gap=gap, every=COARSE),
             )
         )
         white = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)
@@ -190,11 +201,12 @@ class ModelBasedEstimator(Estimator):
 
     def _candidates(self, response: TissueResponse, size: Array) -> Candidates:
         """All balls of the table that fit into the block."""
-        chosen = np.flatnonzero((response.radii >= self.radii[0] - 1e-12) & (response.radii <= self.radii[1] + 1e-12))
+        limits, gap = limits_in(size, self.radii, BALL_RADII), gap_in(size, self.gap)
+        chosen = np.flatnonzero((response.radii >= limits[0] - 1e-12) & (response.radii <= limits[1] + 1e-12))
         if not len(chosen):
-            raise untabulated(response, self.radii)
+            raise untabulated(response, limits)
         grid, room = centres_and_room(response.axes, size)
-        cells = [np.flatnonzero(room >= response.radii[k] + self.gap) for k in chosen]
+        cells = [np.flatnonzero(room >= response.radii[k] + gap) for k in chosen]
         signals = [response.values[k].reshape(len(grid), -1)[inside] for k, inside in zip(chosen, cells, strict=True)]
         radii = np.repeat(response.radii[chosen], [len(inside) for inside in cells])
         every = np.concatenate(cells)

@@ -15,7 +15,7 @@ from tactsim.localization.evidence import Change
 RADII = np.array([2.5e-3, 3.5e-3, 4.5e-3, 5.5e-3])
 NOISE = 2e-3
 ESTIMATOR = HypothesesEstimator(model_error=0.02, radii=(2.5e-3, 4.5e-3), tube_radii=(2.5e-3, 4.5e-3))
-GAP = ESTIMATOR.gap
+GAP = 0.5e-3
 
 
 @pytest.fixture(scope="module")

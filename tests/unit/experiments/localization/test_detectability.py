@@ -8,7 +8,6 @@ from scenes import cut_words, unmarked_figures
 from scipy.special import ndtri
 from scipy.stats import ncx2
 
-from tactsim.errors import InputError
 from tactsim.experiments.localization import detectability, lump_sensitivity
 from tactsim.experiments.localization.detectability import Detectability, coarse_response
 from tactsim.experiments.localization.detectability_statistics import (
@@ -18,7 +17,7 @@ from tactsim.experiments.localization.detectability_statistics import (
     unit_templates,
 )
 from tactsim.experiments.localization.figures.detectability import DetectabilityFigures, _name_curves
-from tactsim.localization.lump_response import LumpResponse
+from tactsim.localization.lump_response import LumpResponse, spacing_of_centres, tabulated_radii
 from tactsim.plotting import figures_for
 
 RADII = np.array([2e-3, 4e-3, 6e-3, 8e-3])
@@ -146,12 +145,13 @@ def test_the_coarse_response_does_not_depend_on_its_parts(monkeypatch):
     assert whole.values.shape[-3:] == (2, 3, 3)
 
 
-def test_a_block_thinner_than_every_tabulated_ball_is_refused_before_it_is_solved():
-    setup = Detectability.example().grasp
-    thin = setup.model_copy(update={"block": setup.block.model_copy(update={"size": (40e-3, 40e-3, 2.5e-3)})})
-    for response in (coarse_response, lump_sensitivity.lump_response):
-        with pytest.raises(InputError, match=r"2\.5 mm along its shortest side.*3 mm wide; needed: a thicker block"):
-            response(thin)
+@pytest.mark.parametrize("size", [(40e-3, 40e-3, 20e-3), (4e-3, 4e-3, 2e-3), (40e-3, 40e-3, 2.5e-3), (0.2, 0.2, 0.1)])
+def test_balls_of_any_block_are_tabulated_at_a_bounded_number_of_centres(size):
+    radii = tabulated_radii(lump_sensitivity.RADII, size)
+    spacing = spacing_of_centres(lump_sensitivity.SPACING, size, lump_sensitivity.MOST_CENTRES)
+    assert len(radii) >= 10
+    assert 2 * radii[-1] < min(size)
+    assert np.prod(np.ceil(np.array(size) / spacing - 1e-9)) <= 1.2 * lump_sensitivity.MOST_CENTRES
 
 
 def test_words_of_a_single_point_keep_clear_of_the_point_above_it():
