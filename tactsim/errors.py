@@ -51,10 +51,10 @@ class TactsimError(Exception):
         return _raised_again, (type(self), self.args), vars(self)
 
 
-def _raised_again(error: type[TactsimError], given: tuple[Any, ...]) -> TactsimError:
+def _raised_again(error: type[TactsimError], given: Iterable[Any]) -> TactsimError:
     """The error of another process with its message, which its class may make of more than the message."""
     again = error.__new__(error, *given)
-    again.args = given
+    again.args = tuple(given)
     return again
 
 

@@ -108,7 +108,7 @@ def _with_units(value: Any) -> Any:
     if type(value) in (list, tuple):
         return type(value)(map(_with_units, value))
     measured = hasattr(value, "unit") and hasattr(value, "value") and not isinstance(value, BaseModel)
-    return written(value) if measured else value
+    return written(value) if measured and value.unit != "1" else value
 
 
 def plain(value: Any) -> Any:
@@ -127,10 +127,10 @@ def plain(value: Any) -> Any:
         return math.inf  # as in a file; JSON has no text for a number of thousands of digits
     if isinstance(value, list | tuple):
         return [plain(item) for item in value]
-    found = os.fspath(value) if isinstance(value, os.PathLike) else written(value)
-    if found is not None and not isinstance(found, str | int | float | list):
+    leaf = os.fspath(value) if isinstance(value, os.PathLike) else written(value)
+    if leaf is not None and not isinstance(leaf, str | int | float | list):
         raise InputError(f"{shown(value)} cannot stand in a case; allowed: texts, numbers, quantities, lists, mappings and parts")
-    return plain(found) if isinstance(found, list) else found
+    return plain(leaf) if isinstance(leaf, list) else leaf
 
 
 def check_increasing(**lists: Sequence[float]) -> None:

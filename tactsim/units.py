@@ -164,12 +164,11 @@ def _is_pint(value: Any) -> bool:
 
 
 def written(value: Any) -> Any:
-    """A value from Python as a case file holds it: quantities of pint and of results as text, those without a unit as numbers."""
+    """A value from Python as a case file holds it: quantities of pint and of results as text, numpy as numbers."""
     if _is_pint(value) and not hasattr(value.magnitude, "__len__"):
-        unit = f"{value.units:~C}"
-        return f"{value.magnitude:.15g} {unit}" if unit else written(value.magnitude)
+        return f"{value.magnitude:.15g} {value.units:~C}".rstrip()
     if hasattr(value, "unit") and hasattr(value, "value"):
-        return written(value.value) if value.unit == "1" else f"{value.value} {value.unit}"
+        return f"{value.value} {value.unit}".removesuffix(" 1")
     if hasattr(value, "tolist") and not _is_pint(value):
         return value.tolist()
     if isinstance(value, Mapping):

@@ -14,7 +14,7 @@ from tactsim.errors import InvalidQuantity, Refused
 from tactsim.results.quantity import Quantity
 from tactsim.unit_conversion import _registry, compact, factor_to
 from tactsim.unit_definitions import PLAIN, PREFIXED, SHOWN_PREFIXES, UNPREFIXED, _powers_of_ten, prefix_power
-from tactsim.units import Length, compact_unit, format_quantity, parse_quantity, written, written_quantity
+from tactsim.units import Length, compact_unit, format_quantity, parse_quantity, written_quantity
 
 
 @pytest.mark.parametrize(
@@ -203,12 +203,6 @@ def test_a_number_has_a_customary_prefix_or_an_exponent(value: float, unit: str,
     assert format_quantity(value, unit) == text
     assert compact_unit(value, unit) == text.split()[1]
     assert parse_quantity(written_quantity(value, unit), unit) == value
-
-
-def test_a_quantity_without_a_unit_is_written_as_a_number() -> None:
-    pints = pint.UnitRegistry(cache_folder=None)
-    given = [Quantity(0.3, "1", ""), pints.Quantity(0.3), pints.Quantity(1, "mm/m"), Quantity(2e-3, "m", "")]
-    assert written(given) == [0.3, 0.3, "1 mm/m", "0.002 m"]
 
 
 def test_a_length_of_a_result_is_no_number() -> None:
