@@ -47,6 +47,16 @@ class TactsimError(Exception):
 
     exit_code: ClassVar[int] = 1
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _raised_again, (type(self), self.args), vars(self)
+
+
+def _raised_again(error: type[TactsimError], given: Iterable[Any]) -> TactsimError:
+    """The error of another process with its message, which its class may make of more than the message."""
+    again = error.__new__(error, *given)
+    again.args = tuple(given)
+    return again
+
 
 class InputError(TactsimError):
     """What the user wrote cannot be used.

@@ -6,6 +6,7 @@ import inspect
 import itertools
 import keyword
 import math
+import os
 import sys
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
@@ -14,7 +15,7 @@ from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin, get_type_h
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
 
-from tactsim.errors import Refused
+from tactsim.errors import InputError, Refused, shown
 from tactsim.field_docstrings import with_fields
 from tactsim.refusals import refusals_of
 from tactsim.units import written
@@ -86,7 +87,7 @@ class _MadeInPython(ModelMetaclass):
         if twice := named.keys() & fields.keys():
             raise TypeError(f"{cls.__name__}: {', '.join(sorted(twice))} is given by position and by name")
         try:
-            return super().__call__(**_of_class(cls) | named | fields)  # type: ignore[arg-type]
+            return super().__call__(**_of_class(cls) | _with_units(named | fields))  # type: ignore[arg-type]
         except ValidationError as error:
             refusals = refusals_of(error, written(named | fields), cls)  # type: ignore[arg-type]
             places = {".".join(map(str, path)): message for path, message in refusals.items()}
@@ -100,15 +101,36 @@ class FrozenModel(BaseModel, metaclass=_MadeInPython):
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
 
+def _with_units(value: Any) -> Any:
+    """A value from Python whose quantities of results are as `written`: no length is taken for a number without a unit."""
+    if type(value) is dict:
+        return {key: _with_units(item) for key, item in value.items()}
+    if type(value) in (list, tuple):
+        return type(value)(map(_with_units, value))
+    measured = hasattr(value, "unit") and hasattr(value, "value") and not isinstance(value, BaseModel)
+    return written(value) if measured and value.unit != "1" else value
+
+
 def plain(value: Any) -> Any:
-    """A value from Python as the plain data of a case file: as `written`, and models as mappings."""
+    """A value from Python as the plain data of a case file: as `written`, models as mappings and paths as text.
+
+    Raises
+    ------
+    InputError
+        If a case file has no form for it.
+    """
     if isinstance(value, FrozenModel):
         return value.model_dump(mode="json", by_alias=True, context={"units": "written"})
     if isinstance(value, Mapping):
         return {key: plain(item) for key, item in value.items()}
     if isinstance(value, int) and abs(value) > sys.float_info.max:
         return math.inf  # as in a file; JSON has no text for a number of thousands of digits
-    return [plain(item) for item in value] if isinstance(value, list | tuple) else written(value)
+    if isinstance(value, list | tuple):
+        return [plain(item) for item in value]
+    leaf = os.fspath(value) if isinstance(value, os.PathLike) else written(value)
+    if leaf is not None and not isinstance(leaf, str | int | float | list):
+        raise InputError(f"{shown(value)} cannot stand in a case; allowed: texts, numbers, quantities, lists, mappings and parts")
+    return plain(leaf) if isinstance(leaf, list) else leaf
 
 
 def check_increasing(**lists: Sequence[float]) -> None:

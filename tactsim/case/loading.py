@@ -91,6 +91,8 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
                 key_path = apply_override(document, override)
         except YamlProblems as error:
             raise case_error(error.problems, lambda _, text=override: f"{option} {text}") from None  # type: ignore[misc]
+        except InputError as error:
+            raise CaseError(f"{option} {override}: {error}") from None
         overridden[key_path] = f"{option} {override.partition('=')[0].strip()}"
     return document, place_in(path, overridden)
 

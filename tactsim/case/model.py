@@ -50,6 +50,10 @@ class Case(FrozenModel):
     output: Output = Output()
     """What to write."""
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        experiment = None if type(self) is Case else type(self.experiment)
+        return _unpickled, (experiment,), self.__getstate__()
+
     def _repr_html_(self) -> str:
         text: str = presenter().case_html(self)
         return text
@@ -121,6 +125,12 @@ def experiment_class(kind: str) -> type[Experiment]:
 def case_class(experiment: Any) -> type[Case]:
     """The case whose experiment has this type, which may be ``Any`` to check everything else."""
     return create_model("Case", __base__=Case, __doc__=vars(Case)["__doc__"], experiment=(experiment, ...))
+
+
+def _unpickled(experiment: type[Experiment] | None) -> Case:
+    """The case before its state is set; pickle does not find by its name the class that ``case_class`` makes."""
+    made = Case if experiment is None else case_class(experiment)
+    return made.__new__(made)
 
 
 def any_experiment() -> Any:

@@ -51,10 +51,13 @@ def run(arguments: argparse.Namespace) -> int:
     from tactsim.results import read_result
 
     folders = [folder for place in arguments.results for folder in _folders(place)]
-    results = {name: read_result(folder, fields=False).complete for name, folder in _named(folders).items()}
-    if len(results) < 2:
+    stored = {name: read_result(folder, fields=False) for name, folder in _named(folders).items()}
+    if len(stored) < 2:
         raise InputError("one result has nothing to be compared with; name two or more, or a folder that holds several")
-    report(results, arguments.out, everything=arguments.all)
+    report({name: one.complete for name, one in stored.items()}, arguments.out, everything=arguments.all)
+    for name, one in stored.items():
+        for file in one.changed:
+            console.out(f"warning: {one_line(name)}: {file} was changed since tactsim wrote it")
     return 0
 
 

@@ -143,10 +143,8 @@ def _show_result(arguments: argparse.Namespace) -> int:
     stored = read_result(folder, fields=arguments.save is not None)
     case = stored.provenance.get("case")
     title = str(case.get("title") or "") if isinstance(case, dict) else ""
-    console.out(result_report(stored.result, title or folder.resolve().name))
+    console.out(result_report(stored.complete, title or folder.resolve().name))
     console.out(f"  case {one_line(stored.case_id)}")
-    for name in stored.changed:
-        console.out(f"  warning: {name} was changed since tactsim wrote it")
     if form is not None:
         _save_main_figure(stored.result, arguments.save, form)
     return 0

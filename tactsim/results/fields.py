@@ -53,6 +53,11 @@ def read_fields(directory: Path) -> tuple[FieldFrame, ...]:
         raise StorageError(f"{index} is damaged: {one_line(error)}") from None
 
 
+def field_files(directory: Path) -> list[str]:
+    """Names of the index and of all files of frames in a folder."""
+    return sorted(path.name for path in directory.glob("fields*") if path.suffix in (".pvd", ".vtu"))
+
+
 def _write_frame(frame: FieldFrame, path: Path) -> None:
     import meshio
     from meshio.vtu import write

@@ -11,7 +11,7 @@ from tactsim.outside.files import opened, opened_folder
 from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
 from tactsim.results.document import parse_document, result_of
-from tactsim.results.fields import read_fields
+from tactsim.results.fields import field_files, read_fields
 from tactsim.results.folder import RESULT_FILE
 from tactsim.results.result import Result
 from tactsim.storage.own_files import read_manifest
@@ -30,8 +30,9 @@ class StoredResult:
 
     @property
     def complete(self) -> Result:
-        """The result with its provenance, as it was when it was written."""
-        return replace(self.result, provenance=self.provenance)
+        """The result with its provenance, as it was when it was written, and a warning of each file that is not."""
+        changed = (f"{name} was changed since tactsim wrote it" for name in self.changed)
+        return replace(self.result, provenance=self.provenance, warnings=(*self.result.warnings, *changed))
 
 
 def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
@@ -50,7 +51,8 @@ def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
     result = result_of(document)
     frames = read_fields(folder) if fields else ()
     manifest = read_manifest(folder)
-    edited = () if manifest is None else tuple(manifest.changed(folder, RESULT_FILE, "provenance.json"))
+    read = (RESULT_FILE, "provenance.json", *(field_files(folder) if fields else ()))
+    edited = () if manifest is None else tuple(manifest.changed(folder, *read))
     return StoredResult(replace(result, frames=frames), document.case_id, provenance, folder, edited)
 
 

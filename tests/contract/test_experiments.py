@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import re
 from functools import reduce
 from operator import getitem
@@ -16,6 +17,7 @@ from scenes import cut_words, unmarked_figures
 
 from tactsim.case.json_schema import case_json_schema
 from tactsim.case.loading import load_case
+from tactsim.case.writing import save_case
 from tactsim.errors import CaseError
 from tactsim.interfaces import Experiment
 from tactsim.plotting.canvas import encoded
@@ -91,6 +93,13 @@ def test_a_case_file_gives_it_back_and_passes_the_schema(kind: str, tmp_path: Pa
     jsonschema.Draft7Validator(schema).validate(case)
     assert rounded(load_case(path).experiment.model_dump(mode="json")) == rounded(dumped)
     assert list(jsonschema.Draft7Validator(schema).iter_errors(case | {"experiment": case["experiment"] | {"unheard_of": 1}}))
+
+
+@every_kind
+def test_a_case_goes_to_another_process(kind: str, tmp_path: Path) -> None:
+    case = load_case(save_case(KINDS[kind].example(), tmp_path / "case.yaml"))
+    again = pickle.loads(pickle.dumps(case))
+    assert (again, again.case_id) == (case, case.case_id)
 
 
 @every_kind

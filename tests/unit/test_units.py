@@ -9,7 +9,9 @@ import pint
 import pytest
 from pydantic import TypeAdapter, ValidationError
 
-from tactsim.errors import InvalidQuantity
+from tactsim.contact.coulomb import Coulomb
+from tactsim.errors import InvalidQuantity, Refused
+from tactsim.results.quantity import Quantity
 from tactsim.unit_conversion import _registry, compact, factor_to
 from tactsim.unit_definitions import PLAIN, PREFIXED, SHOWN_PREFIXES, UNPREFIXED, _powers_of_ten, prefix_power
 from tactsim.units import Length, compact_unit, format_quantity, parse_quantity, written_quantity
@@ -201,3 +203,9 @@ def test_a_number_has_a_customary_prefix_or_an_exponent(value: float, unit: str,
     assert format_quantity(value, unit) == text
     assert compact_unit(value, unit) == text.split()[1]
     assert parse_quantity(written_quantity(value, unit), unit) == value
+
+
+def test_a_length_of_a_result_is_no_number() -> None:
+    assert Coulomb(friction=Quantity(0.3, "1", "")).friction == 0.3
+    with pytest.raises(Refused, match=r"Coulomb: friction: '0.002 m' is not allowed; expected a number"):
+        Coulomb(friction=Quantity(2e-3, "m", ""))

@@ -21,7 +21,7 @@ AnyBody: Any = Annotated[RigidBody, Registered(RigidBody)]
 class Amplitude(Loading):
     """Factor over time by which a condition is multiplied, one piece after the other, from zero."""
 
-    pieces: pieces_of(float, "Factor")  # type: ignore[valid-type]
+    pieces: pieces_of(float, "Factor", __name__)  # type: ignore[valid-type]
     """Ramps, jumps, holds, sines or samples of the factor; 1 is the condition as it is written."""
 
 

@@ -74,7 +74,7 @@ class PressureHistory(Loading):
     """Any pressure over time."""
 
     kind: Literal["history"]
-    pieces: pieces_of(Pressure, "LumenPressure")  # type: ignore[valid-type]
+    pieces: pieces_of(Pressure, "LumenPressure", __name__)  # type: ignore[valid-type]
     """Pressure over time, one piece after the other, from zero."""
 
 

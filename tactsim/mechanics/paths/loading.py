@@ -6,6 +6,7 @@ import functools
 import itertools
 import math
 import operator
+import sys
 from collections.abc import Iterator
 from typing import Annotated, Any, Literal, Self
 
@@ -195,9 +196,9 @@ class Loading(FrozenModel):
             yield segments, value
 
 
-def pieces_of(quantity: Any, name: str) -> Any:
-    """Type of a tuple of pieces whose values are of this quantity."""
-    dimensional = [_of_quantity(cls, quantity, name) for cls in DIMENSIONLESS]
+def pieces_of(quantity: Any, name: str, module: str) -> Any:
+    """Type of a tuple of pieces whose values are of this quantity; they stand as ``nameRamp`` ... in ``module``, for pickle."""
+    dimensional = [_of_quantity(cls, quantity, name, module) for cls in DIMENSIONLESS]
     kinds: Any = functools.reduce(operator.or_, dimensional, Hold)
     return tuple[Annotated[kinds, Field(discriminator="kind"), BeforeValidator(_as_mapping)], ...]
 
@@ -211,7 +212,7 @@ def _as_mapping(piece: Any) -> Any:
     return dict(piece) if type(piece) in DIMENSIONLESS else piece
 
 
-def _of_quantity(cls: type[FrozenModel], quantity: Any, name: str) -> type[FrozenModel]:
+def _of_quantity(cls: type[FrozenModel], quantity: Any, name: str, module: str) -> type[FrozenModel]:
     """The piece with its values replaced by the quantity."""
     fields: dict[str, Any] = {
         key: (quantity, ...) for key, field in cls.model_fields.items() if PlainValidator(written) in field.metadata
@@ -219,8 +220,9 @@ def _of_quantity(cls: type[FrozenModel], quantity: Any, name: str) -> type[Froze
     fields |= {
         key: (tuple[quantity, ...], ...) for key, field in cls.model_fields.items() if field.annotation == tuple[Value, ...]
     }
-    made = create_model(f"{name}{cls.__name__}", __base__=cls, **fields)
+    made = create_model(f"{name}{cls.__name__}", __base__=cls, __module__=module, **fields)
     made.__doc__ = vars(cls)["__doc__"]
+    setattr(sys.modules[module], made.__name__, made)
     return made
 
 
@@ -228,7 +230,7 @@ class ForceLoading(Loading):
     """The body presses with a prescribed force; its displacement follows."""
 
     control: Literal["force"]
-    pieces: pieces_of(Force, "Force")  # type: ignore[valid-type]
+    pieces: pieces_of(Force, "Force", __name__)  # type: ignore[valid-type]
     """Force over time, one piece after the other, from zero; it presses from the first moment on."""
 
 
@@ -236,7 +238,7 @@ class DisplacementLoading(Loading):
     """The body is displaced as prescribed, counted from first touch; the force follows."""
 
     control: Literal["displacement"]
-    pieces: pieces_of(Length, "Displacement")  # type: ignore[valid-type]
+    pieces: pieces_of(Length, "Displacement", __name__)  # type: ignore[valid-type]
     """Displacement over time, one piece after the other, from zero."""
 
     @property

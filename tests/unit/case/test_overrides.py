@@ -7,7 +7,7 @@ import pytest
 from tactsim.case import load_case
 from tactsim.case.overrides import apply_override
 from tactsim.case.yaml_reading import YamlProblems, read_yaml
-from tactsim.errors import CaseError
+from tactsim.errors import CaseError, InputError
 
 TEXT = "a: {b: 1, c: null}\nlayers: [{t: 1 mm}, {t: 2 mm}]\nempty: []"
 
@@ -89,3 +89,16 @@ def test_a_part_of_a_default_can_be_set(tmp_path):
         load_case(path, ["experiment.penetration_tolerance=1e-30 m"])  # the unit of a value that may be left out
     with pytest.raises(CaseError, match=r"unknown key \(did you mean 'friction'"):
         load_case(path, ["experiment.contact.fricton=0.1"])
+
+
+@pytest.mark.parametrize("value", [1 + 2j, b"0.8 mm", {1, 2}, object(), [b"0.8 mm"]], ids=lambda value: type(value).__name__)
+def test_what_no_case_file_can_hold_is_refused(value):
+    with pytest.raises(CaseError, match=r"override experiment\.recess: .* cannot stand in a case; allowed: texts, numbers, "):
+        load_case("annulus_icf", {"experiment.recess": value})
+    with pytest.raises(InputError, match="cannot stand in a case"):
+        load_case({"schema": "tactsim/case/1", "experiment": value})
+
+
+def test_a_path_is_set_as_text(tmp_path):
+    case = load_case("dma_atrial", {"experiment.data": {"kind": "file", "path": tmp_path / "moduli.csv"}})
+    assert case.experiment.data.path == str(tmp_path / "moduli.csv")

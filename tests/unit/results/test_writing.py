@@ -40,6 +40,16 @@ def test_a_result_comes_back(tmp_path: Path) -> None:
     np.testing.assert_array_equal(stored.result.quantities["taxel_force_upper"].value, np.arange(6.0).reshape(2, 3))
 
 
+def test_a_result_says_which_of_its_files_were_changed(tmp_path: Path) -> None:
+    place = write_result(RESULT, tmp_path / "out", case_id="abc", provenance=ORIGIN)
+    assert read_result(place).complete.warnings == RESULT.warnings
+    (place / "result.json").write_text((place / "result.json").read_text(encoding="utf-8").replace('"done"', '"well done"'))
+    (place / "fields_0002.vtu").write_bytes((place / "fields_0001.vtu").read_bytes())
+    lines = [f"{name} was changed since tactsim wrote it" for name in ("fields_0002.vtu", "result.json")]
+    assert read_result(place).complete.warnings == (*RESULT.warnings, *lines)
+    assert read_result(place, fields=False).complete.warnings == (*RESULT.warnings, lines[1])
+
+
 def test_the_history_has_units_in_its_header_and_a_row_per_step() -> None:
     late = StepRecord(3, 9, math.inf, {"displacement": 3e-4, "reaction_force": math.nan, "ratio": 0.5})
     assert history_table(replace(RESULT, steps=(*RECORDS, late))).splitlines() == [
