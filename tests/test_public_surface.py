@@ -377,6 +377,11 @@ def test_arguments_of_functions_are_refused_at_once(make, words: str) -> None:
         make()
 
 
+def test_a_variation_shows_what_varies_and_not_the_whole_experiment(grasp: ts.Grasp) -> None:
+    varied = grasp.vary({"block.tissue.c10": ts.uniform("2 kPa", "6 kPa")})
+    assert repr(varied) == "<Variation of grasp: block.tissue.c10={'uniform': ['2 kPa', '6 kPa']}>"
+
+
 def test_a_place_that_an_experiment_lacks_cannot_vary(grasp: ts.Grasp) -> None:
     radius = ts.uniform("2 mm", "6 mm")
     shape = ts.choice(ts.Sphere((0.02, 0.02, 0.01), "4 mm"), ts.Ellipsoid.example())

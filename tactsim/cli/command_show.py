@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
 from tactsim.errors import InputError, StorageError, UnknownName
@@ -19,9 +19,9 @@ DESCRIPTION = """\
 Prints the quantities of a stored result, or the counts and variables of a data set, with their units;
 --save draws its main figure, in the form that the ending of the file names. Of a case file, or the name
 of a shipped case, it prints what would be computed and what looks wrong in it, and --save draws the tissue
-at rest with its mesh and what presses on it: seconds, for nothing is solved. --web serves the live page
-of a grasp or a data set of grasps on this machine, under an address with a random token, until Ctrl-C.
---live shows frames as they come, too.
+at rest with its mesh and what presses on it: seconds, for nothing is solved. Of a sweep file it prints what
+varies, and --save draws the first sample. --web serves the live page of a grasp or a data set of grasps on
+this machine, under an address with a random token, until Ctrl-C. --live shows frames as they come, too.
 """
 EXAMPLES = """\
 examples:
@@ -91,7 +91,7 @@ def run(arguments: argparse.Namespace) -> int:
     if (arguments.result / "zarr.json").is_file():
         return _show_data_set(arguments)
     if (case := _case_of(arguments.result)) is not None:
-        return _show_case(case, arguments.save)
+        return _show_case(case, arguments.save, arguments.result)
     return _show_result(arguments)
 
 
@@ -116,12 +116,15 @@ def _case_of(named: Path) -> Path | None:
     return None if case == named else case
 
 
-def _show_case(path: Path, save: Path | None) -> int:
+def _show_case(path: Path, save: Path | None, named: Path) -> int:
     """What a case would compute, in words and as a picture of its bodies at rest."""
-    from tactsim.case.loading import load_case
+    from tactsim.case.loading import SWEEPS, read_document, validated_case
     from tactsim.cli.figures.result_figures import form_of
 
-    form, result = None if save is None else form_of(save), load_case(path).at_rest()
+    form, read = None if save is None else form_of(save), read_document(path)
+    if str(read[0].value.get("schema")).startswith(SWEEPS):
+        return _show_sweep(path, save, form, named)
+    result = validated_case(*read).at_rest()
     console.out(one_line(result.title or path.stem))
     console.out(f"  {result.kind}, {result.reason}")
     for line in (*result.assumptions, *(f"warning: {warning}" for warning in result.warnings)):
@@ -131,6 +134,44 @@ def _show_case(path: Path, save: Path | None) -> int:
     else:
         _save_main_figure(result, save, form)
     return 0
+
+
+def _show_sweep(path: Path, save: Path | None, form: str | None, named: Path) -> int:
+    """How many samples a sweep would compute and what varies in them, and a picture of the first at rest."""
+    from tactsim.dataset.sampling.layout import first_case
+    from tactsim.dataset.sampling.sweep import load_sweep
+    from tactsim.refusals import value_at
+
+    sweep = load_sweep(path)
+    case, document = first_case(sweep), sweep.document.value
+    console.out(one_line(document.get("title") or path.stem))
+    samples = f"{sweep.samples} samples" + (f", {sweep.per_specimen} of each specimen" if sweep.per_specimen > 1 else "")
+    console.out(f"  a sweep of {sweep.kind}: {samples}, design {sweep.settings.design}; nothing is computed")
+    keys = [place.key.removeprefix("experiment.") for place in sweep.places]
+    width = max(map(len, keys), default=0)
+    for key, place in zip(keys, sweep.places, strict=True):
+        console.out(f"  {key:<{width}}  {_distribution_in_words(value_at(document, place.path))}")
+    if save is not None and form is not None:
+        _save_main_figure(case.at_rest(), save, form)
+    console.out(f"  compute it with: tactsim sweep {one_line(named)} --out {path.stem}.zarr")
+    return 0
+
+
+def _distribution_in_words(written: dict[str, Any]) -> str:
+    """A distribution as the file has it, in a line."""
+    name, entries = next((name, entries) for name, entries in written.items() if isinstance(entries, list) and name != "weights")
+    words = [_option_in_words(entry) for entry in entries]
+    rest = [f"{other} {', '.join(map(str, value))}" for other, value in written.items() if other != name]
+    return one_line("; ".join([f"{name.replace('_', '-')} {', '.join(words)}", *rest]))
+
+
+def _option_in_words(entry: Any) -> str:
+    """A bound or an option; one that is no single word by its kind, or by how many entries it has."""
+    if isinstance(entry, dict):
+        return str(entry.get("kind", "a mapping"))
+    if isinstance(entry, list):
+        return f"a list of {len(entry)}" if entry else "an empty list"
+    return str(entry)
 
 
 def _show_result(arguments: argparse.Namespace) -> int:

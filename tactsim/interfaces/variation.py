@@ -18,6 +18,11 @@ class Variation:
     experiment: Any
     places: Mapping[str, Any]
 
+    def __repr__(self) -> str:
+        """The kind and what varies: the whole experiment would fill a page of a notebook."""
+        varied = ", ".join(f"{place}={shown(distribution)}" for place, distribution in self.places.items())
+        return f"<Variation of {self.experiment.kind}: {varied or 'nothing varies'}>"
+
 
 def uniform(low: Any, high: Any) -> dict[str, Any]:
     """Evenly distributed between two numbers or quantities such as ``"2 mm"``.

@@ -14,8 +14,8 @@ from tactsim.localization.region import GaussianRegion
 def likely_bodies(explanation: Explanation, candidates: Candidates, cell: Array) -> tuple[EstimatedInclusion, ...]:
     """The bodies of a class, the one with the strongest signal first.
 
-    The region of a centre is that of a normal distribution with the covariance of the draws, widened by the variance of an even
-    one over a ``cell`` (3,) in m of the grid of candidates, between whose centres nothing was tried.
+    The covariance of a centre is that of the draws, widened by the variance of an even distribution over a ``cell`` (3,) in m of
+    the grid of candidates, between whose centres nothing was tried; its region is that of a normal distribution with it.
     """
     bodies = []
     for numbers, contrasts, spreads in zip(explanation.bodies, explanation.contrasts, explanation.spreads, strict=True):
@@ -28,10 +28,11 @@ def likely_bodies(explanation: Explanation, candidates: Candidates, cell: Array)
             line = ((x0, y0, z0), (x1, y1, z1))
         away = samples - mean
         covariance = (explanation.weights[:, None] * away).T @ away
+        covariance[:3, :3] += np.diag(np.asarray(cell) ** 2 / 12)
         covariance[4, 4] += explanation.weights @ spreads
         signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[explanation.weights.argmax()]]))
         x, y, z, radius, contrast = map(float, mean)
-        region = GaussianRegion(mean[:3], covariance[:3, :3] + np.diag(np.asarray(cell) ** 2 / 12))
+        region = GaussianRegion(mean[:3], covariance[:3, :3])
         body = EstimatedInclusion(candidates.kind, (x, y, z), radius, contrast, covariance, region, line)
         bodies.append((signal, body))
     return tuple(body for _, body in sorted(bodies, key=lambda pair: -pair[0]))

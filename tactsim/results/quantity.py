@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from tactsim.array import Array
+from tactsim.unit_conversion import compact
 from tactsim.units import conversion, format_quantity
 
 if TYPE_CHECKING:
@@ -107,6 +109,15 @@ def _formatted(value: Any, form: str) -> str:
     return format(np.nan if value is None else value, form)
 
 
+def _in_one_unit(values: Array, unit: str) -> list[str]:
+    """Each of a few values in the unit in which the largest of them reads well, so that they compare."""
+    largest = float(np.abs(values).max(initial=0.0))
+    if unit in ("", "1", "rad") or not largest:
+        return [format_quantity(float(value), unit) for value in values]
+    number, shown = compact(largest, unit, "P")
+    return [f"{value * number / largest:.5g} {shown}" for value in values]
+
+
 def format_values(quantity: Quantity) -> str:
     """A number with its unit, or the shape and range of an array."""
     if quantity.value is None:
@@ -116,7 +127,7 @@ def format_values(quantity: Quantity) -> str:
         return format_quantity(float(values), quantity.unit)
     if values.ndim == 1 and values.size <= LISTED and np.isfinite(values).all():
         values = np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(initial=0.0), 0.0, values)
-        return ", ".join(format_quantity(float(value), quantity.unit) for value in values)
+        return ", ".join(_in_one_unit(values, quantity.unit))
     finite = values[np.isfinite(values)]
     shape = " x ".join(map(str, values.shape))
     if not finite.size:

@@ -18,8 +18,9 @@ CURVES = (("displacement", "reaction_force"), ("displacement", "force"), ("time"
 """What is drawn over what, the first pair that every result has."""
 MOST_BARS = 6
 DASHES = ("-", "--", "-.", ":")
-MARKS = ("o", "s", "^", "D", "v")
-"""Dashes of the curves, one after the other, and marks of their ends, another with every round: told apart without colour."""
+MARKS = ("", "o", "s", "^", "D", "v")
+"""Dashes of the curves, one after the other, and marks of their ends, another with every round: told apart without colour.
+The first have none: in a legend a mark hides the middle of the dashes."""
 MOST_NAMED, TITLE_WIDTH = 4, 66
 """Parts in which the cases differ that the title names, and characters of its lines."""
 

@@ -190,5 +190,6 @@ def _finish(axis: Axes, measure: Measure) -> None:
 
 
 def _legend(figure: Figure, axis: Axes) -> None:
+    """Below all panels: above them stands the title, which may have two lines."""
     handles, labels = axis.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper center", ncols=min(4, len(labels)), fontsize=8)
+    figure.legend(handles, labels, loc="outside lower center", ncols=max(1, len(labels)), fontsize=8)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.dataset.ranking.reference import check_same
+from tactsim.dataset.ranking.reference import check_same, warn_of_inclusions
 from tactsim.dataset.ranking.samples import refuse_reopened, stored_experiment
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError
@@ -54,7 +54,9 @@ def store_confusion(
         its end.
     """
     data = _grasps(store, split)
-    plain = readings_of(stored_grasp(reference), noise=noise)
+    stored = stored_grasp(reference)
+    warn_of_inclusions(stored)
+    plain = readings_of(stored, noise=noise)
     experiment = stored_experiment(store)
     check_same(np.asarray(experiment.block.size), experiment.matrix, plain, "the store")
     refuse_reopened(experiment, Path(store).name)

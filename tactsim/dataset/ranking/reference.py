@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -11,9 +12,11 @@ import scipy
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, jaws_over_time, over_time
-from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
+from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, reference_notes, stored_grasp
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.results import Result
 from tactsim.units import format_quantity
 
 
@@ -37,7 +40,7 @@ class PlainGrasp:
         """From the folders of grasps without a lump: every step of one, or the last steps of several.
 
         A result that was closed in the same steps as the samples shares their errors of friction; several of them are several
-        closings.
+        closings. Those with an inclusion are warned of.
 
         Raises
         ------
@@ -50,6 +53,8 @@ class PlainGrasp:
             raise InputError("no reference; needed: the folder of a grasp of the tissue without a lump")
         results = [stored_grasp(folder) for folder in folders]
         readings = [readings_of(result, noise=0.0) for result in results]
+        for result in results:
+            warn_of_inclusions(result)
         histories = [(over_time(result, "displacement"), jaws_over_time(result, TAXEL_FORCE)) for result in results]
         if len(folders) > 1:
             histories = [(closings[-1:], forces[-1:]) for closings, forces in histories]
@@ -83,6 +88,12 @@ class PlainGrasp:
                 "needed: a reference that closes at least as far as every sample"
             )
         return scipy.interpolate.PchipInterpolator(self.closings, self.forces, axis=0)(np.minimum(wanted, most))
+
+
+def warn_of_inclusions(reference: Result) -> None:
+    """A warning of a reference that holds what is looked for, such as the grasp itself by a slip of the hand."""
+    for note in reference_notes(reference.scene_as(GraspScene).true_inclusions):
+        warnings.warn(note, stacklevel=3)
 
 
 def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str) -> None:

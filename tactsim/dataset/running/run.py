@@ -70,9 +70,10 @@ class Tally:
     def line(self) -> str:
         """One line of progress."""
         now = self.before + self.done + self.failed
-        left = (self.samples - now) / self.rate if self.done + self.failed else None
-        so_far = f"{now} of {self.samples} samples, {self.failed} failed, {_per_time(self.rate)}"
-        return so_far if left is None else f"{so_far}, {_duration(left)} left"
+        so_far = f"{now} of {self.samples} samples, {self.failed} failed"
+        if not self.done + self.failed:
+            return f"{so_far}; computing the first for {_duration(time.monotonic() - self.begin)}"
+        return f"{so_far}, {_per_time(self.rate)}, {_duration((self.samples - now) / self.rate)} left"
 
     def summary(self) -> list[str]:
         """Lines at the end: counts, rate, the slowest samples, and failures by reason."""

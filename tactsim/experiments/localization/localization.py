@@ -38,6 +38,9 @@ from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, rows
 from tactsim.units import Force, NonNegative, format_quantity
 
+NO_ERROR = 1e-9
+"""Error of a place in m that is round-off."""
+
 Taxel = tuple[JawName, Annotated[int, Field(ge=1)], Annotated[int, Field(ge=1)]]
 
 
@@ -220,6 +223,11 @@ def _stiffness_quantities(estimate: Estimate, true: tuple[tuple[float, float], .
     return quantities
 
 
+def _beyond_round_off(error: float) -> float:
+    """An error in m; zero where it is round-off, as in a grasp that is its own mirror image."""
+    return 0.0 if abs(error) < NO_ERROR else float(error)
+
+
 def _error_quantities(estimate: Estimate, true: list[Array]) -> dict[str, Quantity]:
     """Errors of the strongest inclusion against the true one nearest to it in plan."""
     if not estimate.inclusions or not true:
@@ -230,6 +238,6 @@ def _error_quantities(estimate: Estimate, true: list[Array]) -> dict[str, Quanti
         "true_center": Quantity(
             nearest.tolist(), "m", "(x, y, z) of the true inclusion nearest in plan, in the undeformed block"
         ),
-        "lateral_error": Quantity(lateral, "m", f"distance in plan {of}"),
-        "depth_error": Quantity(depth, "m", f"height {of}; positive if estimated too near to the upper jaw"),
+        "lateral_error": Quantity(_beyond_round_off(lateral), "m", f"distance in plan {of}"),
+        "depth_error": Quantity(_beyond_round_off(depth), "m", f"height {of}; positive if estimated too near to the upper jaw"),
     }

@@ -149,6 +149,7 @@ class ModelBasedEstimator(Estimator):
         cells = np.bincount(candidates.cells, fit.weights, int(np.prod(shape))).reshape(shape)
         x, y, z, radius, contrast = map(float, mean)
         region = CellRegion(readings.response.axes, cells)
+        covariance[:3, :3] += np.diag(region.cell**2 / 12)  # between the centres of cells nothing was tried
         pair = self._pair(readings, fit, between=not region.contains(mean[:3]))
         near = pair is not None and _apart(pair) < readings.layout.pitch
         if pair is not None and not near:

@@ -199,6 +199,6 @@ class StructuredSource(BlockSource):
             if volume == 0:
                 raise InputError(
                     f"mesh.cells {list(self.cells)} are too coarse: no element lies in {block.region_names[number]}; "
-                    "take more cells or mesh.kind: tetrahedra"
+                    "take more cells, or leave mesh out: the inclusions then decide on it"
                 )
         return SourcedBlock.of(block, "structured")

@@ -79,6 +79,18 @@ def test_a_case_is_shown_before_it_is_computed(tmp_path: Path, capsys: pytest.Ca
     assert "film_test: nothing to show at rest" in capsys.readouterr().err
 
 
+def test_a_sweep_is_shown_before_it_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["show", "sweep_annulus", "--save", str(tmp_path / "first.svg")]) == 0
+    out = capsys.readouterr().out
+    assert "a sweep of indentation: 500 samples, design sobol; nothing is computed" in out
+    assert "  specimen.material.c10  log-uniform 1 kPa, 10 kPa\n" in out
+    assert "  specimen.thickness     choice 5 mm, 10 mm, 15 mm\n" in out
+    assert out.endswith("compute it with: tactsim sweep sweep_annulus --out sweep_annulus.zarr\n")
+    assert (tmp_path / "first.svg").is_file()
+    assert main(["show", "sweep_arteries"]) == 0
+    assert "choice a list of 1, a list of 2, a list of 1, a list of 2, an empty list; weights" in capsys.readouterr().out
+
+
 def test_a_folder_of_the_name_of_a_case_comes_first(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with contextlib.chdir(folder.parent):
         folder.rename("annulus_icf")

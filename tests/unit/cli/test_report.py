@@ -28,6 +28,9 @@ RESULT = pretended_result(Status.CONVERGED, "done", ())
         ([45e3] * 5, "Pa", "5 values, all 45 kPa"),
         ([None, *[45e3] * 4], "Pa", "5 values, 45 kPa to 45 kPa"),
         (math.nan, "N", "nan N"),
+        ([31.462e-6, 129.77e-6, 1.0359e-3], "m", "0.031462 mm, 0.12977 mm, 1.0359 mm"),
+        ([0.0, 0.0], "N", "0 N, 0 N"),
+        ([1, 2], "1", "1, 2"),
     ],
 )
 def test_values_with_units(value: object, unit: str, text: str) -> None:
@@ -35,7 +38,7 @@ def test_values_with_units(value: object, unit: str, text: str) -> None:
 
 
 def test_a_component_that_is_round_off_beside_another_is_zero() -> None:
-    assert format_values(Quantity([-2.4e-12, 6e-9, -6.112], "N", "")) == "0 N, 6 nN, -6.112 N"
+    assert format_values(Quantity([-2.4e-12, 6e-9, -6.112], "N", "")) == "0 N, 6e-09 N, -6.112 N"
     record = StepRecord(1, 1, 0.0, {"jaw_force_upper_x": -7e-12, "jaw_force_upper_z": 6.1, "time": 1e-15})
     line = step_line(record, dict.fromkeys(record.values, "N"))
     assert "jaw_force_upper_x 0 N  jaw_force_upper_z 6.1 N  time 1e-15 N" in line

@@ -178,6 +178,16 @@ def test_labels_of_contrasts_are_not_written_over_each_other(contrasts: tuple[fl
     assert all(right <= left for (_, right), (left, _) in pairwise(spans))
 
 
+def test_the_title_covers_no_estimator_of_the_legend() -> None:
+    bins = {label: [] for label in AXES}
+    names = ("learned", "model_based", "hypotheses", "thesis with reference", "thesis")
+    figure = errors_figure([{"name": name, "bins": bins} for name in names])
+    figure.draw_without_rendering()
+    (legend,), title = figure.legends, figure._suptitle
+    assert len(legend.get_texts()) == len(names)
+    assert not legend.get_window_extent().overlaps(title.get_window_extent())
+
+
 def test_a_noise_that_nobody_chose_says_where_it_comes_from():
     assert noise_in_words(0.1 / 12**0.5) == "28.868 mN (of sensors that resolve 0.1 N, as the thesis's)"
     assert noise_in_words(2e-3) == "2 mN"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -19,12 +20,16 @@ from made_grasps import (
     plain_result,
     response,
 )
+from scenes import grasp_scene
 from sweeps import small_store
 
 from tactsim.cli import main
 from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.dataset.ranking.samples import judged_samples
 from tactsim.errors import InputError, StorageError
+from tactsim.experiments.localization.source import stored_grasp
+from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.results import write_result
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +68,13 @@ def test_several_results_are_several_closings(tmp_path: Path) -> None:
         PlainGrasp.of_results(folders[:1])
     with pytest.raises(InputError, match="no reference"):
         PlainGrasp.of_results([])
+
+
+def test_a_reference_with_a_lump_is_warned_of(tmp_path: Path, plain: str) -> None:
+    scene = grasp_scene(SIZE, LAYOUT, (Sphere(center=(20e-3, 20e-3, 12e-3), radius=4e-3),), width=40e-3, depth=40e-3)
+    write_result(replace(stored_grasp(plain), scene=scene), tmp_path / "lump", case_id="0" * 16, provenance={})
+    with pytest.warns(UserWarning, match="the reference holds an inclusion"):
+        PlainGrasp.of_results([str(tmp_path / "lump")])
 
 
 def test_the_noise_of_readings_is_as_large_as_stated() -> None:

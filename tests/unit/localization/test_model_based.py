@@ -53,6 +53,16 @@ def test_contrast_of_a_small_ball_has_its_limits():
     assert eshelby_contrast(np.array([0.0, 1.0, 1e9])) == pytest.approx([-5 / 3, 0.0, 2.5], abs=1e-8)
 
 
+@pytest.mark.parametrize(
+    "estimator", [ModelBasedEstimator(model_error=1e-4, **SURE), HypothesesEstimator(model_error=1e-4, factor_spread=0.0)]
+)
+def test_no_place_is_surer_than_the_grid_that_was_tried(response, estimator):
+    read = readings(response, (20.5e-3, 19.5e-3, 12.5e-3), 4e-3, 3.0, noise=1e-6)
+    (body,) = estimator.estimate(read).inclusions
+    cell = np.array([axis[1] - axis[0] for axis in response.axes])
+    assert np.all(np.sqrt(np.diag(body.covariance)[:3]) > 0.999 * cell / np.sqrt(12))
+
+
 @pytest.mark.parametrize(("center", "contrast"), [((20e-3, 20e-3, 13e-3), 2.0), ((13e-3, 26e-3, 8e-3), -1.2)])
 def test_a_lump_is_found_within_its_uncertainty(response, center, contrast):
     estimate = ModelBasedEstimator(model_error=0.01, **SURE).estimate(readings(response, center, 4e-3, contrast))

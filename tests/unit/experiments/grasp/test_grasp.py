@@ -285,7 +285,7 @@ def test_a_mesh_that_does_not_fit_the_case_is_refused(tube_file):
         run(mesh=tube_file, inclusions=[tube | {"shape": TUBE | {"inner_radius": 2e-3}}, {"shape": aside(), "material": "lump"}])
     with pytest.raises(InputError, match="unit right"):
         run(mesh=tube_file | {"unit": "m"}, inclusions=[tube])
-    with pytest.raises(InputError, match="too coarse: no element lies in sphere 1"):
+    with pytest.raises(InputError, match="too coarse: no element lies in sphere 1; take more cells, or leave mesh out"):
         run(inclusions=[{"shape": BALL | {"radius": 0.5e-3}, "material": "lump"}])
     with pytest.raises(InputError, match=r"region 1 .* shares .* of its place with tube 1"):
         run(mesh=tube_file | {"regions": {"5": 1, "6": 0}}, inclusions=[tube])
