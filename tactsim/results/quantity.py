@@ -115,7 +115,7 @@ def _in_one_unit(values: Array, unit: str) -> list[str]:
     if unit in ("", "1", "rad") or not largest:
         return [format_quantity(float(value), unit) for value in values]
     number, shown = compact(largest, unit, "P")
-    return [f"{value * number / largest:.5g} {shown}" for value in values]
+    return [f"{value * (number / largest):.5g} {shown}" for value in values]
 
 
 def format_values(quantity: Quantity) -> str:

@@ -36,6 +36,8 @@ WIDER = 10.0
 """Factor of a penetration tolerance that is advised where the contact does not converge."""
 SHORTER = 100
 """Factor of the number of steps that is advised where not even the first is found."""
+PER_DEPTH = ("N", "N*m", "J", "m^3")
+"""Units of numbers that are those of a metre of depth in plane strain."""
 SAME_TIME = 1e-9
 """Relative difference of two times that is round-off."""
 
@@ -182,6 +184,8 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         """A number at its time; None if the run did not come so far."""
         one = self.problem.asked[name]
         words = one.words if one.factor == 1 else f"{one.words}, times {one.factor:g}"
+        if self.problem.dimension == "plane_strain" and one.unit in PER_DEPTH:
+            words += ", per metre of depth"
         if one.time is None:
             return Quantity(self.steps[-1].values[name], one.unit, words + LAST)
         step = self._step_at(one.time)

@@ -17,8 +17,8 @@ from tactsim.mechanics.paths.history_path import EquilibriumProblem, TimedPath, 
 
 SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
-SWITCH_LENGTH = 1e-3
-"""Length in m over which the state of a surface point may change its mind."""
+SWITCH_OF_HEIGHT = 0.05
+"""Length over which the state of a surface point may change its mind, over the height of the block."""
 TOUCH = 0.02
 """First guess of a closing under a force, so that the jaws touch, over the penetration without multipliers."""
 LUMEN = "lumen:"
@@ -46,7 +46,9 @@ def regularisation(experiment: GraspSetup) -> Augmentation:
     """How stiff the contact is."""
     softest = shear_relaxation(experiment.block.tissue).instantaneous_modulus
     softness = min(SOFTNESS * experiment.tolerance, SOFTNESS_OF_HEIGHT * experiment.block.size[2])
-    return Augmentation(experiment.tolerance, softest, switch_length=SWITCH_LENGTH, softness=softness)
+    return Augmentation(
+        experiment.tolerance, softest, switch_length=SWITCH_OF_HEIGHT * experiment.block.size[2], softness=softness
+    )
 
 
 def grasped_block(experiment: GraspSetup, model: GraspModel) -> PressedBody:

@@ -141,5 +141,5 @@ def test_what_rings_cannot_follow_is_told_and_gets_tetrahedra(inclusions, words)
 @pytest.mark.parametrize("inclusions", [[CENTRED], [CURVED], FORMS["lump beside"]])
 def test_tubes_get_rings_by_themselves(inclusions):
     assert AutomaticSource().chosen(SIZE, inclusions).kind == "graded"
-    beside = np.array([[2e-3, 2e-3], [4e-3, 38e-3]])
+    beside = np.array([[2e-3, 2e-3], [38e-3, 4e-3]])
     assert AutomaticSource().chosen(SIZE, inclusions, [beside]).kind == "tetrahedra"
