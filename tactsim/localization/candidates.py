@@ -13,12 +13,11 @@ from pydantic import AfterValidator
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.readings import TissueResponse
+from tactsim.mesh.block import part_of_usual
 from tactsim.units import Length, Positive, format_quantity
 
-FULL_SIDE = 20e-3
-"""Least side in m of a block from which on the lengths below are as they stand; in smaller ones they are in proportion to it."""
 LINE_STEP = 1e-3
-"""Distance in m of the points on the centre line of a tube, and of parallel centre lines."""
+"""Distance in m of the points on the centre line of a tube, and of parallel centre lines; less in a small block, as all below."""
 ANGLES = 12
 """Directions of tubes over half a turn."""
 CUTS = (0.25, 0.5, 0.75)
@@ -47,11 +46,6 @@ RadiusLimits = Annotated[tuple[Positive[Length], Positive[Length]], AfterValidat
 def no_body(kind: str) -> InputError:
     """What is raised if no candidate of a kind is left."""
     return InputError(f"no {kind} of the tabulated radii fits into the block; take smaller radii or a smaller gap")
-
-
-def part_of_usual(size: Sequence[float] | Array) -> float:
-    """What usual lengths are multiplied by in a block of this size (3,) in m: 1 from `FULL_SIDE` on."""
-    return min(1.0, float(min(size)) / FULL_SIDE)
 
 
 def limits_in(

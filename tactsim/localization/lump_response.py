@@ -16,7 +16,7 @@ import scipy
 from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.errors import InvalidQuantity
-from tactsim.localization.candidates import part_of_usual
+from tactsim.mesh.block import part_of_usual
 
 RIGID_CONTRAST = 2.5
 """Contrast of a small rigid ball in incompressible tissue."""

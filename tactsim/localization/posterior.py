@@ -11,11 +11,23 @@ from tactsim.localization.evidence import Explanation
 from tactsim.localization.region import GaussianRegion
 
 
+def covariance_about(mean: Array, samples: Array, weights: Array, *, spreads: Array, cell: Array) -> Array:
+    """Covariance (5, 5) of place, radius and contrast about a mean (5,), of weighted samples (n, 5).
+
+    The contrast of each has a variance ``spreads`` (n,) of its own, each coordinate that of an even distribution over a ``cell``
+    (3,) in m of the grid of candidates, between whose centres nothing was tried.
+    """
+    away = samples - mean
+    covariance = (weights[:, None] * away).T @ away
+    covariance[:3, :3] += np.diag(cell**2 / 12)
+    covariance[4, 4] += weights @ spreads
+    return np.asarray(covariance)
+
+
 def likely_bodies(explanation: Explanation, candidates: Candidates, cell: Array) -> tuple[EstimatedInclusion, ...]:
     """The bodies of a class, the one with the strongest signal first.
 
-    The covariance of a centre is that of the draws, widened by the variance of an even distribution over a ``cell`` (3,) in m of
-    the grid of candidates, between whose centres nothing was tried; its region is that of a normal distribution with it.
+    ``cell`` (3,) in m is one of the grid of candidates; the region of a centre is that of a normal distribution.
     """
     bodies = []
     for numbers, contrasts, spreads in zip(explanation.bodies, explanation.contrasts, explanation.spreads, strict=True):
@@ -26,10 +38,7 @@ def likely_bodies(explanation: Explanation, candidates: Candidates, cell: Array)
             mean[:3] = candidates.centers[best]
             (x0, y0, z0), (x1, y1, z1) = (map(float, end[best]) for end in (candidates.begins, candidates.ends))
             line = ((x0, y0, z0), (x1, y1, z1))
-        away = samples - mean
-        covariance = (explanation.weights[:, None] * away).T @ away
-        covariance[:3, :3] += np.diag(np.asarray(cell) ** 2 / 12)
-        covariance[4, 4] += explanation.weights @ spreads
+        covariance = covariance_about(mean, samples, explanation.weights, spreads=spreads, cell=cell)
         signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[explanation.weights.argmax()]]))
         x, y, z, radius, contrast = map(float, mean)
         region = GaussianRegion(mean[:3], covariance[:3, :3])

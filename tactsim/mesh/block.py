@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Annotated
 
@@ -18,8 +19,16 @@ FLATNESS = 1e-9
 """Largest distance of a node from the plane of its face, over the longest side of the block."""
 SIZES = "mesh.size, mesh.inclusion_size, mesh.edge_size and mesh.growth"
 """Keys of a case that make more cells or fewer."""
+FULL_SIDE = 20e-3
+"""Least side in m of a block from which on lengths that nobody gives are the usual ones; in smaller ones they are in proportion
+to it, and sizes of elements at the edges of jaws to the least side of their flats."""
 SMALLEST_GAP = 0.3
 """Least distance between inclusions, and from faces, in element sizes near inclusions."""
+
+
+def part_of_usual(size: Sequence[float] | Array) -> float:
+    """What usual lengths are multiplied by in a block of this size (3,) in m: 1 from `FULL_SIDE` on."""
+    return min(1.0, float(min(size)) / FULL_SIDE)
 
 
 class MesherSettings(FrozenModel):

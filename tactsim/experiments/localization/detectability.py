@@ -17,10 +17,10 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.candidates import part_of_usual
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast, spacing_of_centres, tabulated_radii
 from tactsim.materials.library import named_material
 from tactsim.mechanics.paths.loading import DisplacementLoading
+from tactsim.mesh.block import part_of_usual
 from tactsim.progress import elapsed_time
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord

@@ -33,7 +33,7 @@ from tactsim.mechanics.models.block_source import StructuredSource
 CELLS = (14, 14, 8)
 """Cells of the block, each of six tetrahedra: 45 000 unknowns."""
 RADII = np.linspace(1.5e-3, 8e-3, 14)
-"""Radii in m of the tabulated balls, less in a small block (``localization.candidates.part_of_usual``)."""
+"""Radii in m of the tabulated balls, less in a small block (``mesh.block.part_of_usual``)."""
 SPACING, MOST_CENTRES = 1e-3, 100_000
 """Of the tabulated centres in m, less in a small block, and about how many there are at most: 22 MB for a taxel of both jaws."""
 

@@ -25,7 +25,7 @@ from tactsim.localization.candidates import (
     untabulated,
 )
 from tactsim.localization.evidence import Change, nothing
-from tactsim.localization.posterior import likely_bodies
+from tactsim.localization.posterior import covariance_about, likely_bodies
 from tactsim.localization.reference_errors import (
     OTHER_TISSUE,
     SAME_TISSUE,
@@ -140,16 +140,14 @@ class ModelBasedEstimator(Estimator):
         if probability < 0.5:
             reason = f"no inclusion (probability {1 - probability:.3g})"
             return Estimate(False, (), reason + factor_words(fit.bare_factor), probability, factor=fit.bare_factor)
-        mean, covariance = _moments(
-            np.column_stack([candidates.centers, candidates.radii, fit.contrasts / fit.factor]),
-            fit.weights,
-            fit.spreads / fit.factor**2,
-        )
+        samples = np.column_stack([candidates.centers, candidates.radii, fit.contrasts / fit.factor])
         shape = tuple(map(len, readings.response.axes))
-        cells = np.bincount(candidates.cells, fit.weights, int(np.prod(shape))).reshape(shape)
+        region = CellRegion(
+            readings.response.axes, np.bincount(candidates.cells, fit.weights, int(np.prod(shape))).reshape(shape)
+        )
+        mean = fit.weights @ samples
+        covariance = covariance_about(mean, samples, fit.weights, spreads=fit.spreads / fit.factor**2, cell=region.cell)
         x, y, z, radius, contrast = map(float, mean)
-        region = CellRegion(readings.response.axes, cells)
-        covariance[:3, :3] += np.diag(region.cell**2 / 12)  # between the centres of cells nothing was tried
         pair = self._pair(readings, fit, between=not region.contains(mean[:3]))
         near = pair is not None and _apart(pair) < readings.layout.pitch
         if pair is not None and not near:
@@ -225,12 +223,3 @@ def _apart(pair: Estimate) -> float:
     """Distance in plan of two bodies in m."""
     first, other = (np.array(body.center[:2]) for body in pair.inclusions)
     return float(np.linalg.norm(first - other))
-
-
-def _moments(samples: Array, weights: Array, spread: Array) -> tuple[Array, Array]:
-    """Mean (5,) and covariance (5, 5) of weighted samples (n, 5), the last of which has a variance (n,) of its own."""
-    mean = weights @ samples
-    away = samples - mean
-    covariance = (weights[:, None] * away).T @ away
-    covariance[4, 4] += weights @ spread
-    return mean, covariance

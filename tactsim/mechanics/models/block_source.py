@@ -16,7 +16,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
 from tactsim.mesh.any_inclusion import inclusion_name
-from tactsim.mesh.block import BlockMesh, BlockMeshSettings, MesherSettings
+from tactsim.mesh.block import FULL_SIDE, BlockMesh, BlockMeshSettings, MesherSettings, part_of_usual
 from tactsim.mesh.sizing import at_jaw_edges
 from tactsim.model import FrozenModel
 from tactsim.units import Length, Positive
@@ -24,9 +24,6 @@ from tactsim.units import Length, Positive
 Size = tuple[float, float, float]
 TOUCHING = 1e-5
 """Distance in m below which bodies touch, where no mesh is made to follow them."""
-FULL_SIDE = 20e-3
-"""Least side in m of a block from which on the usual element sizes hold; in smaller ones they are in proportion to it, and at the
-edges of jaws to the least side of their flats."""
 ROUND_OFF = 1e-9
 """Relative difference of lengths that are meant to be equal."""
 GAP_SHARE = 0.125
@@ -78,7 +75,7 @@ class SizedSource(MesherSettings, BlockSource):
 
     def settings(self, size: Size, flats: Sequence[Array] = ()) -> BlockMeshSettings:
         """The lengths themselves in a block of this size in m, between jaws that have these ``flats`` (2, 2) in m inside it."""
-        part = min(1.0, min(size) / FULL_SIDE)
+        part = part_of_usual(size)
         usual = {name: part * length for name, length in self.usual.items()}
         given = self.model_dump(exclude={"kind"}, exclude_none=True)
         settings = BlockMeshSettings.model_validate(usual | given)
