@@ -20,7 +20,7 @@ from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.equilibrium.newton_step import Factored, NewtonStep, bordered
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
 from tactsim.fem.solvers.linear import LinearSolver, finest_step, is_exact, resolved, solved
-from tactsim.fem.solvers.solver_choice import section_solver
+from tactsim.fem.solvers.solver_choice import stiff_contact_solver
 from tactsim.fem.threads import one_vector_thread
 
 CYCLE_AFTER = 6
@@ -54,7 +54,7 @@ class Problem:
     def __init__(self, body: Body, fixed: Array, *, solver: LinearSolver | None = None, options: NewtonOptions | None = None):
         self.body = body
         self.constraints = Constraints(fixed, body.pattern)
-        self.solver = solver or section_solver()
+        self.solver = solver or stiff_contact_solver(body.space.dim)
         self.options = options or NewtonOptions()
         self._scales = Scales.of(body)
         self._factored: Factored | None = None

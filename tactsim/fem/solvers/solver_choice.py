@@ -12,7 +12,7 @@ from tactsim.fem.solvers.linear import LinearSolver, SuperLU, has_pardiso
 from tactsim.fem.solvers.pardiso import FactorSize, QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
-from tactsim.fem.solvers.section_solver import section_factors
+from tactsim.fem.solvers.stiff_contact import section_factors, solid_factors
 
 OPERATIONS_PER_SECOND, ENTRIES_PER_SECOND = 9e10, 2.5e9
 """Speeds of a factor in single precision and of solutions with it, on two idle cores, as a single run has them. Blocks of 45 293
@@ -62,9 +62,11 @@ def solver_for(body: Body) -> LinearSolver:
     return iterated(body)
 
 
-def section_solver() -> LinearSolver:
-    """The solver of sections of some ten thousand unknowns."""
-    return section_factors() if has_pardiso() else SuperLU()
+def stiff_contact_solver(dim: int) -> LinearSolver:
+    """The solver of sections and of bodies in space under stiff contact, of some ten thousand unknowns."""
+    if not has_pardiso():
+        return SuperLU()
+    return section_factors() if dim == 2 else solid_factors()
 
 
 def factored(guide: QuasiDefinitePardiso) -> Relay:

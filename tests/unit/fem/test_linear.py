@@ -16,8 +16,8 @@ from tactsim.fem.solvers.linear import LinearSystem, direct_solver, solved
 from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso, SinglePardiso, SymmetricPardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import MOST_OF_ONE, ReusedFactor
-from tactsim.fem.solvers.section_solver import EXACT
-from tactsim.fem.solvers.solver_choice import giving_way, section_solver
+from tactsim.fem.solvers.solver_choice import giving_way, stiff_contact_solver
+from tactsim.fem.solvers.stiff_contact import EXACT
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -283,10 +283,11 @@ def left_over(matrix: csr_matrix, solution: np.ndarray, right: np.ndarray) -> fl
     return float(np.abs(matrix @ solution - right).max() / np.abs(right).max())
 
 
+@pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("bulk_modulus", [None, 1e6])
-def test_a_symmetric_matrix_gets_the_symmetric_factor_and_as_exact_a_solution(bulk_modulus):
-    matrix, right = tangent_of(2, axes=2, bulk_modulus=bulk_modulus)
-    solver = section_solver()
+def test_a_symmetric_matrix_gets_the_symmetric_factor_and_as_exact_a_solution(dim, bulk_modulus):
+    matrix, right = tangent_of(dim, axes=dim, bulk_modulus=bulk_modulus)
+    solver = stiff_contact_solver(dim)
     for scale in (1.0, 2.0):
         solver.factor(LinearSystem(scale * matrix))
         assert left_over(scale * matrix, solver.solve(right), right) < 1e-12  # round-off times the growth of pivots
@@ -295,46 +296,47 @@ def test_a_symmetric_matrix_gets_the_symmetric_factor_and_as_exact_a_solution(bu
 
 
 @pytest.mark.parametrize("first", ["symmetric", "not symmetric"])
-def test_a_matrix_that_is_not_symmetric_is_iterated_from_then_on(first):
-    matrix, right = tangent_of(2, axes=2)
+@pytest.mark.parametrize(("dim", "name", "exact"), [(2, "pardiso", True), (3, "pardiso_single, reused", False)])
+def test_a_matrix_that_is_not_symmetric_gets_another_solver_from_then_on(first, dim, name, exact):
+    matrix, right = tangent_of(dim, axes=dim)
     skew = matrix.copy()
     rows = np.repeat(np.arange(skew.shape[0]), np.diff(skew.indptr))
     skew.data[np.argmax(np.where(rows != skew.indices, np.abs(skew.data), 0.0))] *= 1 + 1e-6
-    solver = section_solver()
+    solver = stiff_contact_solver(dim)
     if first == "symmetric":
         solver.factor(LinearSystem(matrix))
         solver.solve(right)
     for each in (skew, matrix):
         solver.factor(LinearSystem(each))
         assert left_over(each, solver.solve(right), right) < 1e-11
-        assert solver.name == "pardiso_single, reused"
-        assert not solver.exact
+        assert (solver.name, solver.exact) == (name, exact)
     symmetric = direct_solver(SymmetricPardiso.name)
     symmetric.factor(skew)  # the mutant: it halves the difference
     assert left_over(skew, symmetric.solve(right), right) > 1e-11
 
 
-def test_a_symmetric_factor_that_is_not_exact_gives_way_to_the_iteration(monkeypatch):
-    matrix, right = tangent_of(2, axes=2)
+@pytest.mark.parametrize(("dim", "name"), [(2, "pardiso"), (3, "pardiso_single, reused")])
+def test_a_symmetric_factor_that_is_not_exact_gives_way(dim, name, monkeypatch):
+    matrix, right = tangent_of(dim, axes=dim)
     exact = SymmetricPardiso.solve
     monkeypatch.setattr(SymmetricPardiso, "solve", lambda self, right: exact(self, right) * (1 + 10 * EXACT))
-    solver = section_solver()
+    solver = stiff_contact_solver(dim)
     solver.factor(LinearSystem(matrix))
     assert left_over(matrix, solver.solve(right), right) < 1e-11
-    assert solver.name == "pardiso_single, reused"
+    assert solver.name == name
 
 
-def test_a_section_whose_guide_fails_gets_general_factors(monkeypatch):
-    matrix, right = tangent_of(2, axes=2)
+def test_a_body_in_space_whose_guide_fails_gets_general_factors(monkeypatch):
+    matrix, right = tangent_of(3, axes=3)
     monkeypatch.setattr(SinglePardiso, "solve", lambda self, right: np.zeros_like(right))
-    solver = section_solver()
+    solver = stiff_contact_solver(3)
     solver.factor(LinearSystem(changed(matrix, 0.0, skew=0.05)))
     assert left_over(changed(matrix, 0.0, skew=0.05), solver.solve(right), right) < 1e-11
     assert solver.name == "pardiso, reused"
 
 
 def test_it_is_closed_and_takes_another_pattern_and_refuses_to_solve_before():
-    solver = section_solver()
+    solver = stiff_contact_solver(2)
     for dim in (2, 3):
         with pytest.raises(InputError, match="factor a matrix"):
             solver.solve(np.ones(3))

@@ -1,4 +1,4 @@
-"""Linear systems under stiff contact, of sections above all: symmetric factors without friction, with it one that is reused."""
+"""Linear systems under stiff contact: symmetric factors without friction, with it general ones or, in space, a reused one."""
 
 from __future__ import annotations
 
@@ -18,11 +18,32 @@ without order: sections without friction have up to 1e-15."""
 EXACT = 1e-9
 """Largest residual of the first solution with a symmetric factor, over its right-hand side: 1e-15 where the pivots suffice."""
 WORTH, MOST = 12, 12
-"""Solutions that count as much as a new factor, and most with an old one for a system: in a section of 8 000 unknowns a factor in
-single precision takes 7.7 ms and a solution 0.66 ms."""
+"""Solutions that count as much as a new factor, and most with an old one for a system, under stiff contact in space."""
 LARGEST_ERROR = 1e-4
-"""Error of a solution over its size, at most. The contact of sections is stiff: with 1e-2, which suffices in space, `annulus_icf`
-takes 165 systems instead of 141, no time less and other steps, and Newton does not find into a block that sticks to a plate."""
+"""Error of a solution over its size, at most: with 1e-2, which suffices for softer contact, Newton does not find into a block
+that sticks to a plate."""
+
+
+class GeneralFactors(IterativeSolver):
+    """MKL Pardiso: a general factor of each system, exact with friction too."""
+
+    name = Pardiso.name
+    exact = True
+
+    def __init__(self) -> None:
+        self._direct = Pardiso(minimum_degree=True)
+
+    def factor(self, system: LinearSystem) -> None:
+        """Factor a system; its pattern must be that of the first one."""
+        self._direct.factor(system.matrix)
+
+    def solve(self, right: Array, accuracy: float = 0.0) -> Array:
+        """Exact solution for one right-hand side (n,) of the last system."""
+        return self._direct.solve(right)
+
+    def close(self) -> None:
+        """Release the factor's memory; the next matrix may have another pattern."""
+        self._direct.close()
 
 
 class SymmetricFactors(IterativeSolver):
@@ -37,7 +58,7 @@ class SymmetricFactors(IterativeSolver):
     exact = True
 
     def __init__(self) -> None:
-        self._direct = SymmetricPardiso(blocks=False)
+        self._direct = SymmetricPardiso(blocks=False, minimum_degree=True)
         self._probes: tuple[Array, Array] | None = None
         self._unchecked: csr_matrix | None = None
         self._symmetric = False
@@ -80,11 +101,21 @@ class SymmetricFactors(IterativeSolver):
 
 
 def section_factors() -> Relay:
-    """Symmetric factors until one will not do; from then on one in single precision, of the part that friction does not couple,
-    guides the iteration for as long as it pays; general factors where that fails.
+    """Of a section: symmetric factors until one will not do, which is with friction, from then on general ones.
 
-    With friction a reused factor takes a fifth (`annulus_icf`) to a third (`switch_tissues_fem`) less time than general factors
-    of all systems, in space under as stiff a contact half (`annulus_tilted_3d`).
+    Exact steps of Newton's are polished with the factor of the step before, so that `annulus_icf` takes 102 systems. A symmetric
+    factor in single precision that is reused as the guide of GMRES takes 141 for the same states, 77 factors and 1 179 solutions:
+    twice the time for the systems where a solution costs a fifth of a factor, as memory is slow.
+    """
+    return Relay(SymmetricFactors(), GeneralFactors)
+
+
+def solid_factors() -> Relay:
+    """Of a body in space: symmetric factors until one will not do; from then on one in single precision, of the part that
+    friction does not couple, guides the iteration for as long as it pays; general factors where that fails.
+
+    A factor costs more solutions than in a section: with friction `annulus_tilted_3d` takes two thirds of the time that general
+    factors of all systems would.
     """
 
     def guided() -> ReusedFactor:
