@@ -12,6 +12,7 @@ from tactsim.case.writing import case_text
 from tactsim.errors import InputError, UnknownName
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.drawing import begin_all
+from tactsim.outside.files import named_path
 from tactsim.outside.text import one_line
 from tactsim.plotting import figures_for
 from tactsim.plotting.canvas import Figures, encoded, picture
@@ -42,8 +43,10 @@ def load_result(directory: str | Path) -> Result:
     ------
     StorageError
         If a file is missing, damaged, or of a newer version of tactsim.
+    InputError
+        If the directory is neither a path nor a text.
     """
-    return read_result(directory).complete
+    return read_result(named_path(directory, "the folder of a result")).complete
 
 
 def figures(result: Result, name: str | None = None) -> dict[str, Figure] | Figure:
@@ -59,7 +62,7 @@ def figures(result: Result, name: str | None = None) -> dict[str, Figure] | Figu
         begin_all(drawings.values())
         return Figures({stem: draw.figure() for stem, draw in drawings.items()})
     if name not in drawings:
-        raise UnknownName("figure", name, drawings)
+        raise UnknownName("figure", str(name), drawings)
     figure: Figure = drawings[name].figure()
     return figure
 
@@ -94,6 +97,7 @@ def save(result: Result, directory: str | Path, *, force: bool = False, fields: 
     StorageError
         If the place is taken or cannot be written.
     """
+    place = named_path(directory, "the folder of a result")
     origin = result.provenance
     if not origin:
         if result.experiment is None:
@@ -102,7 +106,7 @@ def save(result: Result, directory: str | Path, *, force: bool = False, fields: 
         origin = case.provenance()
     drawn = {f"{name}.png": encoded(figure) for name, figure in result.plot().items()}
     kept = result if fields else replace(result, frames=())
-    return write_result(kept, directory, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
+    return write_result(kept, place, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
 
 
 def case_html(case: Case | Experiment) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import inspect
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -534,3 +535,19 @@ def test_the_signature_of_every_kind_reads_without_machinery() -> None:
         assert " at 0x" not in text, cls.__name__
         assert "Annotated" not in text, cls.__name__
     assert str(inspect.signature(ts.Sphere)) == "(*, center: tuple[float, float, float], radius: float)"
+
+
+@pytest.mark.parametrize(
+    ("call", "needed"),
+    [
+        (lambda result: ts.load_case(3), "a case: needed: a path or a text, not 3"),
+        (lambda result: ts.load_result(None), "the folder of a result: needed: a path or a text, not None"),
+        (lambda result: result.save(None), "the folder of a result: needed: a path or a text, not None"),
+        (lambda result: result.plot(3), "unknown figure '3'"),
+        (lambda result: result["reaction_force"].to(3), "'3' is not a unit of what is in 'N'"),
+    ],
+    ids=["load_case", "load_result", "save", "plot", "to"],
+)
+def test_a_value_of_another_type_is_refused_in_words(call: Any, needed: str) -> None:
+    with pytest.raises(ts.InputError, match=re.escape(needed)):
+        call(ts.ClosedForm.example().run())

@@ -19,7 +19,7 @@ from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
 from tactsim.errors import CaseError, InputError, StorageError, UnknownName, suggestion
 from tactsim.model import plain
-from tactsim.outside.files import LIMITS, TooLarge, Unreadable, opened
+from tactsim.outside.files import LIMITS, TooLarge, Unreadable, named_path, opened
 from tactsim.outside.text import one_line
 from tactsim.refusals import as_written, value_at
 from tactsim.shipped import CASES, case_path, shipped_name
@@ -76,6 +76,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
     if isinstance(path, Mapping):
         path, document = "case", Document(plain(path))
     else:
+        named_path(path, "a case")
         path = case_path(path)
         document = _read_file(path)
     overridden: dict[KeyPath, str] = {}

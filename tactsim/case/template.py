@@ -1,4 +1,4 @@
-"""A commented case file of a kind to begin with: what an example of it needs, and every other key with its default."""
+"""A commented case file of a kind to begin with: what it starts with, and every other key with its default."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def template(kind: str) -> str:
         If there is no such kind of experiment, with the nearest one.
     """
     cls = experiment_class(kind)
-    example = cls.example()
+    example = cls.starting_case()
     given = case_document(example)["experiment"]
     every = case_document(example, complete=True)["experiment"]
     lines = [

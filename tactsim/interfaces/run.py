@@ -95,6 +95,11 @@ class Runnable(CaseKind):
         text: str = presenter().case_html(self)
         return text
 
+    @classmethod
+    def starting_case(cls) -> Self:
+        """What ``tactsim new`` writes to begin with: the example, if its mesh is one that a user wants."""
+        return cls.example()
+
     def vary(self, places: Mapping[str, Any]) -> Variation:
         """The experiment with distributions at some places: ``{"thickness": tactsim.uniform("2 mm", "6 mm")}``.
 

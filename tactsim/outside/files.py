@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import BinaryIO, Literal, Self
 
-from tactsim.errors import StorageError
+from tactsim.errors import InputError, StorageError
 from tactsim.outside.text import one_line
 from tactsim.shipped import PROGRAM
 
@@ -159,6 +159,19 @@ def opened(path: str | Path, kind: str, limit: int | None = None) -> OutsideFile
     _check(state, kind, str(path), limit)
     quotable = not isinstance(path, CasePath) or _place(candidate, beside) != "elsewhere"
     return OutsideFile(kind, str(path), candidate, state.st_size, limit, quotable, beside)
+
+
+def named_path(given: object, what: str) -> Path:
+    """The path that a user gave in Python; ``what`` it is of begins the message.
+
+    Raises
+    ------
+    InputError
+        If it is no path and no text.
+    """
+    if not isinstance(given, str | os.PathLike):
+        raise InputError(f"{what}: needed: a path or a text, not {one_line(repr(given), 60)}")
+    return Path(given)
 
 
 def opened_folder(path: str | Path, kind: str) -> tuple[Path, Place]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,7 +12,7 @@ from tactsim.outside.files import opened, opened_folder
 from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
 from tactsim.results.document import parse_document, result_of
-from tactsim.results.fields import field_files, read_fields
+from tactsim.results.fields import INDEX, field_files, read_fields
 from tactsim.results.folder import RESULT_FILE
 from tactsim.results.result import Result
 from tactsim.storage.own_files import read_manifest
@@ -27,12 +28,19 @@ class StoredResult:
     directory: Path
     changed: tuple[str, ...] = ()
     """Files that are read here and were changed since tactsim wrote them."""
+    without_fields: bool = False
+    """Whether tactsim wrote fields there that are asked for and gone."""
+
+    @property
+    def changes(self) -> tuple[str, ...]:
+        """A sentence for every changed file, and for fields that are gone."""
+        gone = (f"{INDEX}, which tactsim wrote, is gone: the result has no fields",) if self.without_fields else ()
+        return tuple(f"{name} was changed since tactsim wrote it" for name in self.changed) + gone
 
     @property
     def complete(self) -> Result:
-        """The result with its provenance, as it was when it was written, and a warning of each file that is not."""
-        changed = (f"{name} was changed since tactsim wrote it" for name in self.changed)
-        return replace(self.result, provenance=self.provenance, warnings=(*self.result.warnings, *changed))
+        """The result with its provenance, as it was when it was written, and a warning of each file that is not or is gone."""
+        return replace(self.result, provenance=self.provenance, warnings=(*self.result.warnings, *self.changes))
 
 
 def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
@@ -53,7 +61,22 @@ def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
     manifest = read_manifest(folder)
     read = (RESULT_FILE, "provenance.json", *(field_files(folder) if fields else ()))
     edited = () if manifest is None else tuple(manifest.changed(folder, *read))
-    return StoredResult(replace(result, frames=frames), document.case_id, provenance, folder, edited)
+    gone = fields and manifest is not None and INDEX in manifest.files and not (folder / INDEX).exists()
+    return StoredResult(replace(result, frames=frames), document.case_id, provenance, folder, edited, gone)
+
+
+def read_basis(directory: str | Path) -> StoredResult:
+    """The result in a folder, without fields, on which something else rests; a file that was changed is a Python warning.
+
+    Raises
+    ------
+    StorageError
+        As `read_result`.
+    """
+    stored = read_result(directory, fields=False)
+    for change in stored.changes:
+        warnings.warn(f"{one_line(directory)}: {change}", stacklevel=2)
+    return stored
 
 
 def _provenance(path: Path) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from tactsim.errors import StorageError
 from tactsim.outside.extras import extras_named
 from tactsim.outside.files import Unreadable, opened_folder
 from tactsim.outside.text import one_line
+from tactsim.results.folder import RESULT_FILE
 from tactsim.storage.files import refuse_few_descriptors
 
 if TYPE_CHECKING:
@@ -241,7 +242,8 @@ def _folder(path: str | Path) -> Path:
 def _group(folder: Path) -> dict[str, Any]:
     if not os.path.lexists(folder / META):
         older = "; it is of Zarr format 2, tactsim writes format 3" if (folder / ".zgroup").exists() else ""
-        raise StorageError(f"{one_line(folder)} is not a data set of tactsim: it holds no {META}{older}")
+        result = "; it is the result of a run, which tactsim show shows" if (folder / RESULT_FILE).is_file() else ""
+        raise StorageError(f"{one_line(folder)} is not a data set of tactsim: it holds no {META}{older}{result}")
     try:
         metadata = read_json(folder / META)
     except StorageError as error:

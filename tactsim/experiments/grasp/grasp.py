@@ -47,6 +47,12 @@ class Grasp(GraspSetup, Experiment):
             mesh=StructuredSource(kind="structured", cells=(4, 4, 2)),
         )
 
+    @classmethod
+    def starting_case(cls) -> Self:
+        """The example on the default mesh."""
+        example = cls.example()
+        return cls(block=example.block, loading=example.loading)
+
     def doubts(self) -> list[str]:
         """Taxels beside the block, and sizes and materials that look like a wrong unit."""
         from tactsim.experiments.grasp.warnings import doubts

@@ -13,7 +13,7 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.outside.input_path import InputPath
-from tactsim.results.reading import read_result
+from tactsim.results.reading import read_basis
 from tactsim.results.result import Result, Status, rows
 from tactsim.sensors.matrix_readout import MatrixReadout
 
@@ -44,7 +44,7 @@ class MatrixReadoutRun(Experiment):
         StorageError
             If the stored result is damaged or not that of a grasp.
         """
-        stored = read_result(self.grasp, fields=False).result
+        stored = read_basis(self.grasp).result
         scene, times, forces = _read(stored, self.grasp)
         reading = self.readout.read(times, forces, scene.matrix.area)
         voltage, force = reading.filtered.max(axis=(2, 3)), reading.force.sum(axis=(2, 3))

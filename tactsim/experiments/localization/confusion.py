@@ -15,7 +15,7 @@ from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, Source
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
-from tactsim.experiments.localization.source import folder_words, readings_of, stored_grasp, with_reference
+from tactsim.experiments.localization.source import folder_words, readings_of, reference_notes, stored_grasp, with_reference
 from tactsim.interfaces import Experiment, Inclusion
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
@@ -26,7 +26,7 @@ from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.outside.input_path import InputPath
 from tactsim.registry import kinds
 from tactsim.results.quantity import Quantity
-from tactsim.results.result import StepRecord
+from tactsim.results.result import Result, StepRecord
 from tactsim.units import Force, NonNegative, format_quantity
 
 
@@ -63,8 +63,10 @@ class Confusion(Experiment):
 
     def begin(self) -> Course:
         """One step per grasp, with the share of its draws whose class was estimated right."""
-        readings, counted = self._readings(), _Counted()
-        return Course(self._estimated(readings, counted), lambda: self._findings(counted))
+        plain, counted = stored_grasp(self.reference), _Counted()
+        doubts = reference_notes(plain.scene_as(GraspScene).true_inclusions)
+        readings = self._readings(plain)
+        return Course(self._estimated(readings, counted), lambda: self._findings(counted, doubts))
 
     def _estimated(self, readings: Sequence[tuple[str, str, Readings]], counted: _Counted) -> Iterator[StepRecord]:
         for number, (name, true, one) in enumerate(readings):
@@ -77,19 +79,20 @@ class Confusion(Experiment):
             counted.steps.append(StepRecord(number + 1, 0, 0.0, {"right": float(alone.share_right or 0.0)}))
             yield counted.steps[-1]
 
-    def _findings(self, counted: _Counted) -> Findings:
+    def _findings(self, counted: _Counted, doubts: tuple[str, ...]) -> Findings:
         table = counted.table
         return Findings(
             f"{int(np.trace(table.counts))} of {table.total} estimates named the right class",
             counted.steps,
             quantities=table_quantities(table),
             assumptions=(f"noise of a reading {format_quantity(self.noise, 'N')} (one standard deviation), seed {self.seed}",),
+            warnings=doubts,
             scene=ConfusionScene(classes=CLASSES, grasps=tuple(counted.judged), estimator=self.estimator.kind),
         )
 
-    def _readings(self) -> list[tuple[str, str, Readings]]:
+    def _readings(self, reference: Result) -> list[tuple[str, str, Readings]]:
         """Name, true class, and readings with reference and response of every grasp."""
-        plain = readings_of(stored_grasp(self.reference), self.readings, noise=self.noise)
+        plain = readings_of(reference, self.readings, noise=self.noise)
         response = stored_response(self.reference) if self.estimator.needs_response else None
         readings = []
         for folder in self.grasps:

@@ -19,7 +19,7 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.readings import Readings
 from tactsim.materials.homogeneous import stiffness_ratio
 from tactsim.refusals import first_fault
-from tactsim.results.reading import read_result
+from tactsim.results.reading import read_basis, read_result
 from tactsim.results.result import Result
 from tactsim.units import format_quantity
 
@@ -37,7 +37,7 @@ def stored_grasp(folder: str) -> Result:
     InputError
         If it is not that of a grasp with taxels.
     """
-    result = read_result(folder, fields=False).result
+    result = read_basis(folder).result
     if not isinstance(result.scene, GraspScene) or not has_taxels(result, TAXEL_FORCE):
         raise InputError(
             f"{folder} holds the result of {result.kind} without forces of taxels; needed: a grasp or a matrix_readout with steps"

@@ -22,7 +22,7 @@ from tactsim.materials import AnyMaterial
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
-from tactsim.results.reading import read_result
+from tactsim.results.reading import read_basis
 from tactsim.results.result import Status, StepRecord
 from tactsim.units import Length, Positive, format_quantity
 
@@ -143,7 +143,7 @@ class RunSource(Source):
     def tissue(self) -> Tissue:
         """The curve in the folder."""
         yield from ()
-        return ContactCurve.of_result(read_result(self.path, fields=False).result, beyond=self.beyond)
+        return ContactCurve.of_result(read_basis(self.path).result, beyond=self.beyond)
 
 
 class IndentationSource(Source):

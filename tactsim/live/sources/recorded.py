@@ -16,7 +16,7 @@ from tactsim.live.sources.noise import RESOLVED, ReadingNoise, solution_noise
 from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recording, check_extent
 from tactsim.outside.files import Unreadable
 from tactsim.outside.text import one_line
-from tactsim.results.reading import read_result
+from tactsim.results.reading import read_basis
 from tactsim.results.result import Result, Status
 from tactsim.results.scene import UnreadableScene
 
@@ -37,7 +37,7 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
     StorageError
         If there is no result, it is damaged, or the file of an inclusion's surface is gone or has changed.
     """
-    stored = read_result(folder, fields=False)
+    stored = read_basis(folder)
     result = stored.result
     if not isinstance(result.scene, GraspScene | UnreadableScene) or not has_taxels(result, TAXEL_FORCE):
         raise InputError(

@@ -16,12 +16,12 @@ from tactsim.shipped import shipped_cases
 
 
 @pytest.mark.parametrize("kind", experiment_kinds())
-def test_the_written_case_is_the_example_and_every_comment_a_default(kind: str, tmp_path: Path) -> None:
+def test_the_written_case_is_a_starting_case_and_every_comment_a_default(kind: str, tmp_path: Path) -> None:
     text = template(kind)
     place = tmp_path / "case.yaml"
     place.write_text(text, encoding="utf-8")
     case = load_case(place)
-    assert case.case_id == Case(schema=SCHEMA, title=case.title, experiment=experiment_kinds()[kind].example()).case_id
+    assert case.case_id == Case(schema=SCHEMA, title=case.title, experiment=experiment_kinds()[kind].starting_case()).case_id
     place.write_text(re.sub(r"^  #(?=\S|  )", "  ", text, flags=re.MULTILINE), encoding="utf-8")
     assert place.read_text() != text or "defaults" not in text
     assert load_case(place).case_id == case.case_id
@@ -37,6 +37,12 @@ def test_a_case_that_reads_a_result_runs_as_it_is_written(
     assert main(["run", f"{kind}.yaml", "--figures", "none"]) == 0, capsys.readouterr().err
     assert "warning" not in capsys.readouterr().out
     assert (tmp_path / "results" / kind / "result.json").is_file()
+
+
+def test_a_grasp_starts_on_the_default_mesh() -> None:
+    """The example of the tests has cells too coarse for the lump that a user will put into it."""
+    lines = template("grasp").splitlines()
+    assert "  #mesh: {kind: automatic}" in lines
 
 
 def test_a_file_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

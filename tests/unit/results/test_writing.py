@@ -14,6 +14,7 @@ from pretence import PNG, pretended_result
 
 from tactsim.errors import StorageError
 from tactsim.results import Result, Status, StepRecord, read_result, write_result
+from tactsim.results.reading import read_basis
 from tactsim.results.writing import history_table
 
 RECORDS = tuple(StepRecord(k, 4, 1e-11, {"displacement": k * 1e-4, "reaction_force": k * 0.5}) for k in (1, 2))
@@ -48,6 +49,24 @@ def test_a_result_says_which_of_its_files_were_changed(tmp_path: Path) -> None:
     lines = [f"{name} was changed since tactsim wrote it" for name in ("fields_0002.vtu", "result.json")]
     assert read_result(place).complete.warnings == (*RESULT.warnings, *lines)
     assert read_result(place, fields=False).complete.warnings == (*RESULT.warnings, lines[1])
+
+
+def test_fields_that_are_gone_are_told(tmp_path: Path) -> None:
+    place = write_result(RESULT, tmp_path / "out", case_id="abc", provenance=ORIGIN)
+    (place / "fields.pvd").unlink()
+    assert read_result(place).complete.warnings == (
+        *RESULT.warnings,
+        "fields.pvd, which tactsim wrote, is gone: the result has no fields",
+    )
+    assert read_result(place, fields=False).complete.warnings == RESULT.warnings
+
+
+def test_what_rests_on_a_changed_result_is_told(tmp_path: Path) -> None:
+    place = write_result(RESULT, tmp_path / "out", case_id="abc", provenance=ORIGIN)
+    assert read_basis(place).result.steps == RECORDS
+    (place / "result.json").write_text((place / "result.json").read_text(encoding="utf-8").replace('"done"', '"well done"'))
+    with pytest.warns(UserWarning, match=r"out: result\.json was changed since tactsim wrote it"):
+        assert read_basis(place).result.reason == "well done"
 
 
 def test_the_history_has_units_in_its_header_and_a_row_per_step() -> None:

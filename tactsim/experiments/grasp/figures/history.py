@@ -125,7 +125,8 @@ def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
     factor, unit = _scale([forces[shown[0]]], "N")
     for group, colour, marker in zip(_alike(forces, shown), TAXEL_COLOURS, TAXEL_MARKERS, strict=False):
         line = FORCE_STYLES[group[0][0]][1]
-        names = [f"{LETTERS[side]}{row + 1},{column + 1}" for side, row, column in group]
+        in_order = sorted(group, key=lambda taxel: (JAWS.index(taxel[0]), *taxel[1:]))
+        names = [f"{LETTERS[side]}{row + 1},{column + 1}" for side, row, column in in_order]
         rows = [" ".join(names[k : k + 3]) for k in range(0, len(names), 3)]
         style: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 3.5, "linewidth": 1.1}
         axis.plot(*_from_rest(along, factor * forces[group[0]]), line, label="\n".join(rows), **style)

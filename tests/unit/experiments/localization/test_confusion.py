@@ -41,7 +41,7 @@ def folders(tmp_path):
 
 def run(folders, *names, **changes):
     given = {"noise": 1e-3, "draws": 3, "estimator": ThesisEstimator(background="reference")} | changes
-    experiment = Confusion(grasps=tuple(folders[name] for name in names), reference=folders["plain"], **given)
+    experiment = Confusion(grasps=tuple(folders[name] for name in names), **({"reference": folders["plain"]} | given))
     return experiment.run()
 
 
@@ -55,6 +55,12 @@ def test_classes_are_counted(folders):
     assert result.quantities["recalls"].value == [1.0, 0.5, None, None, None]
     assert unmarked_figures(result) == []
     assert str(folders["lump"]) not in str(result.scene)
+
+
+def test_a_reference_that_holds_a_lump_is_warned_of(folders):
+    reference = {"reference": folders["hidden"]}
+    assert run(folders, "lump").warnings == ()
+    assert any("the reference holds an inclusion" in line for line in run(folders, "lump", **reference).warnings)
 
 
 def test_much_noise_hides_the_lump(folders):
