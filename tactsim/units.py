@@ -130,8 +130,8 @@ def conversion(given_unit: str, unit: str) -> float:
     """
     try:
         return factor_to(unit or "1", given_unit or "1") if (unit or "1") != (given_unit or "1") else 1.0
-    except (TypeError, ValueError):  # TypeError: a number instead of a text
-        raise InvalidQuantity(f"{shown(str(unit))} is not a unit of what is in {shown(given_unit)}") from None
+    except ValueError:
+        raise InvalidQuantity(f"{shown(unit)} is not a unit of what is in {shown(given_unit)}") from None
 
 
 def compact_unit(value: float, unit: str) -> str:

@@ -544,7 +544,7 @@ def test_the_signature_of_every_kind_reads_without_machinery() -> None:
         (lambda result: ts.load_result(None), "the folder of a result: needed: a path or a text, not None"),
         (lambda result: result.save(None), "the folder of a result: needed: a path or a text, not None"),
         (lambda result: result.plot(3), "unknown figure '3'"),
-        (lambda result: result["reaction_force"].to(3), "'3' is not a unit of what is in 'N'"),
+        (lambda result: result["largest_force"].to(3), "needed: a unit as text, such as 'N', not 3"),
     ],
     ids=["load_case", "load_result", "save", "plot", "to"],
 )

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.errors import InvalidQuantity
 from tactsim.unit_conversion import compact
 from tactsim.units import conversion, format_quantity
 
@@ -83,8 +84,10 @@ class Quantity:
         Raises
         ------
         InvalidQuantity
-            If the unit is unknown or has another dimension.
+            If the unit is no text, unknown or has another dimension.
         """
+        if not isinstance(unit, str):
+            raise InvalidQuantity(f"needed: a unit as text, such as {self.unit or '1'!r}, not {unit!r:.60}")
         factor = conversion(self.unit, unit)
         value = self.numbers * factor
         return replace(self, value=float(value) if value.ndim == 0 else value.tolist(), unit=unit)

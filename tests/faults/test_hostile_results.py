@@ -24,6 +24,8 @@ from tactsim.live.session.thinking import estimate_message, message_or_fault
 from tactsim.outside import json_text
 from tactsim.results.reading import read_result
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*result.json was changed since tactsim wrote it")
+
 HUGE = 10**39
 BAD_DOCUMENTS: dict[str, tuple[str, str]] = {
     "a word for a number": ('"value": 0.001', '"value": "one"'),

@@ -41,8 +41,7 @@ def test_a_case_that_reads_a_result_runs_as_it_is_written(
 
 def test_a_grasp_starts_on_the_default_mesh() -> None:
     """The example of the tests has cells too coarse for the lump that a user will put into it."""
-    lines = template("grasp").splitlines()
-    assert "  #mesh: {kind: automatic}" in lines
+    assert "\n  #mesh:\n  #  kind: automatic\n" in template("grasp")
 
 
 def test_a_file_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

@@ -126,6 +126,7 @@ def test_the_estimator_at_the_beginning_takes_off_the_reference_that_was_given(t
     with_client(content, act)
 
 
+@pytest.mark.filterwarnings("ignore:.*result.json was changed since tactsim wrote it")
 def test_a_stored_estimate_has_its_region_and_the_readings_it_was_made_of(tmp_path: Path) -> None:
     folder = localized_folder(tmp_path / "a")
     path = folder / "result.json"

@@ -28,6 +28,8 @@ from tactsim.mesh.inclusions.surface import Surface
 from tactsim.results import Quantity, write_result
 from tactsim.shipped import CASES
 
+pytestmark = pytest.mark.filterwarnings("ignore:.*result.json was changed since tactsim wrote it")
+
 BY_NAME = {choice.name: choice for choice in offered_choices()}
 
 
