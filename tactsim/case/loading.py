@@ -76,8 +76,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
     if isinstance(path, Mapping):
         path, document = "case", Document(plain(path))
     else:
-        named_path(path, "a case")
-        path = case_path(path)
+        path = case_path(named_path(path, "a case"))
         document = _read_file(path)
     overridden: dict[KeyPath, str] = {}
     overrides = [overrides] if isinstance(overrides, str) else overrides

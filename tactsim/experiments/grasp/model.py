@@ -9,7 +9,7 @@ from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.any_block_source import AnySource, AutomaticSource
 from tactsim.mechanics.models.block_model import GraspModel
-from tactsim.mechanics.models.block_source import GradedSource, SourcedBlock, TetrahedraSource
+from tactsim.mechanics.models.block_source import SourcedBlock, TetrahedraSource
 
 
 def grasp_mesh(experiment: GraspSetup) -> SourcedBlock:
@@ -38,11 +38,7 @@ def _sourced(experiment: GraspSetup, source: AnySource) -> SourcedBlock:
     centred = not any(experiment.upper.offset + experiment.lower.offset)
     if isinstance(source, TetrahedraSource) and source.jaw is None and centred and len(widths) == 1 and flats:
         source = source.model_copy(update={"jaw": widths.pop()})
-    return (
-        source.sourced(size, shapes, flats)
-        if isinstance(source, (GradedSource, TetrahedraSource))
-        else source.sourced(size, shapes)
-    )
+    return source.sourced(size, shapes, flats)
 
 
 def grasp_model(experiment: GraspSetup, sourced: SourcedBlock) -> GraspModel:

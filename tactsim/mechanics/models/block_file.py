@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Inclusion
 from tactsim.mechanics.models.block_source import BlockSource, Size, SourcedBlock
@@ -40,7 +41,7 @@ class FileSource(BlockSource):
     tag: str | None = None
     """Name of the cell data with the tags; by default the first usual one in the file."""
 
-    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
         """The mesh in the file, checked against the block and the number of inclusions.
 
         Raises

@@ -113,7 +113,7 @@ class LayersSource(SizedSource):
         served = len(inclusions) == 1 and inclusions[0].solids(np.asarray(size, float))[0].ball_image() is not None
         return None if served else "layers serves exactly one ball, stretched or not"
 
-    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
         """The mesh of a block of this size in m around its only inclusion.
 
         Raises
@@ -181,7 +181,7 @@ class StructuredSource(BlockSource):
         hollow = next((inclusion_name(k, one) for k, one in enumerate(inclusions, 1) if one.hollow), None)
         return hollow and f"structured cannot follow the wall of {hollow}"
 
-    def sourced(self, size: Size, inclusions: Sequence[Inclusion]) -> SourcedBlock:
+    def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
         """The mesh of a block of this size in m.
 
         Raises

@@ -319,8 +319,8 @@ def test_touching_lumps_are_refused_in_cells_too():
 def test_a_mesh_of_smaller_elements_than_asked_for_says_so(part, monkeypatch):
     made = StructuredSource.sourced
 
-    def smaller(self, size, inclusions):
-        sourced = made(self, size, inclusions)
+    def smaller(self, *block_and_jaws):
+        sourced = made(self, *block_and_jaws)
         return replace(sourced, block=replace(sourced.block, part=part))
 
     monkeypatch.setattr(StructuredSource, "sourced", smaller)
