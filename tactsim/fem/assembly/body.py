@@ -15,7 +15,7 @@ from tactsim.errors import InputError
 from tactsim.fem.assembly import kernels, section_kernels
 from tactsim.fem.assembly.interpreted import InterpretedPart, PointState
 from tactsim.fem.assembly.material_forms import compiled_form
-from tactsim.fem.assembly.pattern import Pattern, build_pattern
+from tactsim.fem.assembly.pattern import Pattern
 from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.threads import loop_threads
 from tactsim.interfaces import Material
@@ -97,6 +97,7 @@ class Body:
         if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
             raise InputError(f"regions must give one of {len(materials)} materials for each of {len(space.elements)} elements")
         self.space = space
+        self.pattern = Pattern(space.elements, space.dim, space.pressures)
         self.materials = tuple(materials)
         self.regions = np.asarray(regions)
         self.numbers = np.arange(len(self.regions))
@@ -114,11 +115,6 @@ class Body:
         body = copy.copy(self)
         body.relaxation = relaxation
         return body
-
-    @cached_property
-    def pattern(self) -> Pattern:
-        """Sparse pattern of the tangent."""
-        return build_pattern(self.space.elements, self.space.dim, self.space.pressures)
 
     def kinematics(self, unknowns: Array) -> Kinematics:
         """Deformation at the quadrature points."""

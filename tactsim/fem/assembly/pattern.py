@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from functools import cached_property
 
 import numba
 import numpy as np
@@ -12,9 +12,9 @@ from tactsim.array import Array
 from tactsim.fem.threads import are_serial
 
 
-@dataclass(frozen=True)
 class Pattern:
-    """CSR pattern of a tangent assembled from elements.
+    """CSR pattern of a tangent assembled from Taylor-Hood elements, made where it is first asked for its entries: a body of which
+    a part stands for the whole never makes its own.
 
     The rows of one node's components have one structure, so an element's entry for nodes (a, b) and components (i, k) stands
     in ``data`` at ``indptr[row of (a, i)] + offsets[e, a, b] + k``; pressures count as nodes of one component after the
@@ -22,18 +22,53 @@ class Pattern:
     colour share no node, so threads add without locks and every entry is summed in the same order whatever their number. A body
     whose loops use one thread has one colour, in the order of the mesh: neighbours then find one another's numbers in the cache:
     in a section of 7 000 elements the residual takes 4.4 ms instead of 6.1, the tangent 15 instead of 24.
+
+    Parameters
+    ----------
+    elements : (E, A) quadratic nodes
+    dim : displacement components of a node
+    pressures : (E, V)
     """
 
-    indptr: Array
-    indices: Array
-    offsets: Array
-    order: Array
-    color_starts: Array
+    def __init__(self, elements: Array, dim: int, pressures: Array):
+        self._elements, self._dim, self._pressures = elements, dim, pressures
+        self._node_count = int(elements.max()) + 1
+        self.size = self._node_count * dim + int(pressures.max()) + 1
+        """Number of unknowns."""
+
+    @cached_property
+    def offsets(self) -> Array:
+        """Places (E, A + V, A + V) of the first component of each node of an element in the rows of each other."""
+        leading = np.hstack([self._elements * self._dim, self._node_count * self._dim + self._pressures])
+        offsets = np.empty((len(leading), leading.shape[1], leading.shape[1]), np.int32)
+        _locate(leading, self.indptr, self.indices, offsets)
+        return offsets
 
     @property
-    def size(self) -> int:
-        """Number of unknowns."""
-        return len(self.indptr) - 1
+    def indptr(self) -> Array:
+        """Where the rows start (size + 1,)."""
+        return self._structure[0]
+
+    @property
+    def indices(self) -> Array:
+        """Columns of the entries, row by row."""
+        return self._structure[1]
+
+    @cached_property
+    def diagonal(self) -> Array:
+        """Places (size,) of the entries on the diagonal."""
+        unknowns = np.arange(self.size)
+        return self.positions(unknowns, unknowns)
+
+    @property
+    def order(self) -> Array:
+        """The elements (E,) colour by colour."""
+        return self._coloured[0]
+
+    @property
+    def color_starts(self) -> Array:
+        """Where each colour begins, and the last one ends."""
+        return self._coloured[1]
 
     def matrix(self, data: Array) -> csr_matrix:
         """The CSR matrix with these entries (no copy)."""
@@ -44,18 +79,15 @@ class Pattern:
         keys = np.repeat(np.arange(self.size, dtype=np.int64), np.diff(self.indptr)) * self.size + self.indices
         return np.searchsorted(keys, rows.astype(np.int64) * self.size + columns)
 
+    @cached_property
+    def _structure(self) -> tuple[Array, Array]:
+        elements, dim = self._elements, self._dim
+        unknowns = (elements[:, :, None] * dim + np.arange(dim)).reshape(len(elements), -1)
+        return _csr_structure(np.hstack([unknowns, self._node_count * dim + self._pressures]), self.size)
 
-def build_pattern(elements: Array, dim: int, pressures: Array) -> Pattern:
-    """Pattern of Taylor-Hood elements (E, A) of quadratic nodes with ``dim`` displacement components, and pressures (E, V)."""
-    node_count = int(elements.max()) + 1
-    size = node_count * dim + int(pressures.max()) + 1
-    unknowns = (elements[:, :, None] * dim + np.arange(dim)).reshape(len(elements), -1)
-    indptr, indices = _csr_structure(np.hstack([unknowns, node_count * dim + pressures]), size)
-    leading = np.hstack([elements * dim, node_count * dim + pressures])
-    offsets = np.empty((len(elements), leading.shape[1], leading.shape[1]), np.int32)
-    _locate(leading, indptr, indices, offsets)
-    order, starts = _order(elements, node_count)
-    return Pattern(indptr, indices, offsets, order, starts)
+    @cached_property
+    def _coloured(self) -> tuple[Array, Array]:
+        return _order(self._elements, self._node_count)
 
 
 def _csr_structure(element_unknowns: Array, size: int) -> tuple[Array, Array]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from tactsim.array import Array
@@ -15,15 +17,9 @@ class SurfaceAssembly:
     def __init__(self, points: SurfacePoints, pattern: Pattern, dim: int):
         self.points = points
         self.unknowns = (points.nodes[:, :, None] * dim + np.arange(dim)).reshape(len(points.nodes), -1)
-        width = self.unknowns.shape[1]
-        facets = self.unknowns[:: points.per_facet]
-        rows = np.repeat(facets[:, :, None], width, axis=2)
-        places = pattern.positions(rows, rows.transpose(0, 2, 1)).reshape(len(facets), width // dim, dim, width // dim, dim)
-        self._places, self._positions = np.unique(places.transpose(2, 4, 0, 1, 3).ravel(), return_inverse=True)
         values = points.values[: points.per_facet]
         self._products = np.einsum("qa,qb->qab", values, values).reshape(len(values), -1)
-        self._entries = len(pattern.indices)
-        self.size, self._dim = pattern.size, dim
+        self._pattern, self.size, self._dim = pattern, pattern.size, dim
 
     def force(self, traction: Array) -> Array:
         """External nodal forces (size,) in N of tractions (d, n) in Pa."""
@@ -37,14 +33,24 @@ class SurfaceAssembly:
 
     def stiffness(self, derivative: Array) -> Array:
         """Tangent entries, minus the derivative of the external force, for d(traction)/dx of shape (d, d, n) in Pa/m."""
-        return self.add_stiffness(np.zeros(self._entries), derivative)
+        return self.add_stiffness(np.zeros(len(self._pattern.indices)), derivative)
 
     def add_stiffness(self, data: Array, derivative: Array) -> Array:
         """The tangent entries ``data`` of the whole body with those of ``stiffness`` added to them, in place."""
         weighted = (-self.points.weights * derivative).reshape(-1, self.points.per_facet)
-        data[self._places] += np.bincount(self._positions, (weighted @ self._products).ravel(), len(self._places))
+        places, positions = self._places
+        data[places] += np.bincount(positions, (weighted @ self._products).ravel(), len(places))
         return data
 
     def total(self, traction: Array) -> Array:
         """Resultant (d,) in N."""
         return traction @ self.points.weights
+
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        """Places of the surface's entries in the tangent, each once, and which of them each facet's entries take."""
+        facets, dim = self.unknowns[:: self.points.per_facet], self._dim
+        width = facets.shape[1]
+        rows = np.repeat(facets[:, :, None], width, axis=2)
+        places = self._pattern.positions(rows, rows.transpose(0, 2, 1)).reshape(len(facets), width // dim, dim, width // dim, dim)
+        return np.unique(places.transpose(2, 4, 0, 1, 3).ravel(), return_inverse=True)

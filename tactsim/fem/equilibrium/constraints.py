@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from tactsim.array import Array
@@ -15,17 +17,13 @@ class Constraints:
     """
 
     def __init__(self, fixed: Array, pattern: Pattern, *, counts: Array | None = None):
-        self.fixed, self._counts = np.unique(fixed), counts
-        held = np.zeros(pattern.size, bool)
-        held[self.fixed] = True
-        rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
-        self._cleared = np.flatnonzero(held[rows] | held[pattern.indices])
-        self._diagonal = pattern.positions(self.fixed, self.fixed)
+        self.fixed, self._pattern, self._counts = np.unique(fixed), pattern, counts
 
     def apply(self, data: Array) -> Array:
         """Clear rows and columns of the fixed unknowns in the tangent entries, in place, and put one on their diagonal."""
-        data[self._cleared] = 0.0
-        data[self._diagonal] = 1.0
+        cleared, diagonal = self._places
+        data[cleared] = 0.0
+        data[diagonal] = 1.0
         return data
 
     def free(self, residual: Array) -> Array:
@@ -37,3 +35,11 @@ class Constraints:
     def counted(self, forces: Array) -> Array:
         """Forces (size,), or (m,) of the first unknowns, as often as they count."""
         return forces if self._counts is None else forces * self._counts[: len(forces)]
+
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        """Places in the tangent of the entries of fixed rows and columns, and of those on the diagonal."""
+        pattern, held = self._pattern, np.zeros(self._pattern.size, bool)
+        held[self.fixed] = True
+        rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
+        return np.flatnonzero(held[rows] | held[pattern.indices]), pattern.diagonal[self.fixed]

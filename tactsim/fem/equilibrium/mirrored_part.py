@@ -12,6 +12,7 @@ from scipy.spatial import cKDTree
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
+from tactsim.fem.assembly.regularising_springs import AnchoredSprings
 from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.balance import ExternalForces
@@ -102,7 +103,7 @@ class MirroredPart:
             control = PrescribedForce(tuple(control.directions[number] for number in touched), control.force / self.copies)
         return ExternalForces(
             tuple(forces.interfaces[number].of_part(surface.assembly, surface.points) for number, surface in touched.items()),
-            tuple(_LoadOnPart(load, self) for load in forces.loads),
+            tuple(self._load(load) for load in forces.loads),
             None if forces.nodal_force is None else self.shared(forces.nodal_force),
             control,
         )
@@ -113,6 +114,12 @@ class MirroredPart:
             return None
         stress = np.take(step.stress, self.elements, axis=1)  # an index would give an order that the loops are compiled for anew
         return RelaxationStep(step.scale[self.elements], stress)
+
+    def _load(self, load: FollowerLoad) -> FollowerLoad:
+        """What acts on the part of a load on the whole; of springs without the tangent entries of the whole."""
+        if isinstance(load, AnchoredSprings):
+            return load.of_part(self.body, self._unknowns, self._sides.prod(axis=1))
+        return _LoadOnPart(load, self)
 
     def _surface(self, surface: SurfaceAssembly) -> SurfacePart | None:
         """What lies on the part of a surface of the whole, the same object for the same surface; None if nothing does."""
@@ -171,18 +178,14 @@ class _LoadOnPart:
 
     def __init__(self, load: FollowerLoad, part: MirroredPart):
         self._load, self._part = load, part
-        self._given, self._stiffness = np.zeros(0), np.zeros(0)
 
     def force(self, displacement: Array) -> Array:
         """External nodal forces (size',) in N at nodal displacements (n', d)."""
         return self._part.shared(self._load.force(self._unfolded(displacement)))
 
     def stiffness(self, displacement: Array) -> Array:
-        """Tangent entries, minus the derivative of the force; springs return the same array whatever the displacement."""
-        given = self._load.stiffness(self._unfolded(displacement))
-        if given is not self._given:
-            self._given, self._stiffness = given, self._part.tangent(given)
-        return self._stiffness
+        """Tangent entries, minus the derivative of the force."""
+        return self._part.tangent(self._load.stiffness(self._unfolded(displacement)))
 
     def _unfolded(self, displacement: Array) -> Array:
         return self._part.signs * displacement[self._part.images]
