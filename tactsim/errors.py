@@ -117,6 +117,10 @@ class ConvergenceError(Unfinished):
         self.solutions = max(len(self.history) - 1, 0) if solutions is None else solutions
 
 
+class TooShort(ConvergenceError):
+    """A step whose load is hidden in round-off; a longer one may not be."""
+
+
 class Collapsed(Unfinished):
     """An element has lost so much of its volume that it is about to turn inside out; no shorter load step helps."""
 

@@ -18,6 +18,15 @@ TANGENTIAL_SHARE = 0.1
 """Tangential over normal penalty: elastic slip is ten times the penetration at equal traction."""
 SLIP_SHARE = 10.0
 """Largest elastic slip over the largest penetration."""
+RELAXED_SHARE = 0.02
+"""The same at the present pressure where the contact of relaxing tissue is made softer, because a step with it failed.
+
+Why: tissue is stiffest and presses hardest at once after a jump, and a penalty never decreases by itself, as every change of it
+moves the tissue. Atrial tissue relaxes to a hundred thousandth of its stiffness: under a force its contact ended a thousand times
+stiffer than the tolerance asks, and points at the edge opened and closed by turns. With half of the tolerance instead, what the
+change moves counts as an error in time."""
+SOFTER = 2.0
+"""Least factor by which it becomes softer."""
 WIDER = 10.0
 """Factor between the tolerances through which a state is approached."""
 ROUND_OFF = 1e-9
@@ -69,6 +78,13 @@ class Regularisation:
     def seen(self, pressure: float) -> Self:
         """Adapted to the largest contact pressure in Pa of a solution; the penalty never decreases."""
         return replace(self, largest_pressure=max(pressure, self.largest_pressure))
+
+    def softened(self, pressure: float) -> Self | None:
+        """As stiff as the largest pressure in Pa of the present asks, whatever was before; None if it is hardly stiffer."""
+        needed = TARGET_SHARE / RELAXED_SHARE * pressure
+        if not 0 < SOFTER * needed < max(self.softest, self.largest_pressure):
+            return None
+        return replace(self, softest=min(self.softest, needed), largest_pressure=min(self.largest_pressure, needed))
 
     def applied(self, pair: ContactPair, state: ContactState | None = None) -> ContactPair:
         """The pair with this regularisation, given the state that the last solution left at its points."""

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError
+from tactsim.errors import TooShort
 from tactsim.fem.assembly.external_forces import LinearisedContact
 from tactsim.fem.assembly.surface import SurfaceAssembly
 
@@ -73,7 +73,7 @@ class PrescribedForce:
 
         Raises
         ------
-        ConvergenceError
+        TooShort
             If round-off hides the force.
         """
         missing, lost = self.force, 0.0
@@ -81,7 +81,7 @@ class PrescribedForce:
             missing -= float(direction @ surface.total(traction))
             lost += float(uncertain @ surface.points.weights)
         if lost > LARGEST_ROUND_OFF * abs(self.force):
-            raise ConvergenceError(
+            raise TooShort(
                 f"the round-off of the contact, {lost:.1e} N, hides the prescribed force of {self.force:.1e} N; "
                 "allow more penetration (penetration_tolerance)"
             )

@@ -8,10 +8,13 @@ from functools import partial
 from typing import Generic, Protocol, TypeVar
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError
+from tactsim.errors import ConvergenceError, TooShort
 from tactsim.fem.paths.event import located
 from tactsim.fem.paths.progress import Headway, check_steps
 from tactsim.fem.paths.states import PathState, beyond
+
+LENGTHENED = 10.0
+"""Factor by which a step is longer whose load was hidden in round-off."""
 
 
 class TimedState(PathState, Protocol):
@@ -96,6 +99,14 @@ class TimeMarcher(Generic[State]):
                     if event is not None and happened:
                         around, width = {**path, reached.time: reached}, event.tolerance * (reached.time - now.time)
                         reached = located(partial(self._advance, now), event.value, around, width)
+                except TooShort as failure:
+                    self.rejected += 1
+                    if step >= largest or stop == stops[-1] <= now.time + step:
+                        raise ConvergenceError(f"gave up at {now.time:.6g} s: {failure}", failure.history) from failure
+                    wanted = LENGTHENED * step
+                    if stop <= now.time + step:
+                        break  # no step can end at this stop
+                    continue
                 except ConvergenceError as failure:
                     self.rejected += 1
                     error = error if isinstance(failure, _TooLong) else 4 * self._control.tolerance

@@ -9,7 +9,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
-from tactsim.errors import Collapsed, ConvergenceError
+from tactsim.errors import Collapsed, ConvergenceError, TooShort
 from tactsim.fem.assembly.body import Kinematics, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.equilibrium.balance import Equilibrium, point_displacements
@@ -101,16 +101,31 @@ def contact_equilibrium(
     """
     try:
         return _equilibrium(problem, state, load, guess, action)
+    except TooShort:
+        raise
     except ConvergenceError as error:
         if collapsed := collapsed_in_words(problem.body, state.kinematics, state.unknowns):
             raise Collapsed(
                 f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
-        if approached := _approached(problem, state, load, guess, action):
-            return approached
+        if found := _softened(problem, state, load, guess, action) or _approached(problem, state, load, guess, action):
+            return found
         if not 0 < load - state.load <= SNAP_STEP * load:
             raise
     return _after_snap(problem, state, load, action)
+
+
+def _softened(
+    problem: Problem, state: ContactEquilibrium, load: float, guess: Array, action: Action
+) -> ContactEquilibrium | None:
+    """The state of tissue that relaxes, the contact no stiffer than its present pressure asks; None if it is not found so."""
+    if action.relaxation is None:
+        return None
+    softer = state.regularisation.softened(max(float(contact.state.pressure.max()) for contact in state.contacts))
+    try:
+        return softer and _equilibrium(problem, replace(state, regularisation=softer), load, guess, action)
+    except ConvergenceError:
+        return None
 
 
 def _approached(

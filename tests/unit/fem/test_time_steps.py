@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from tactsim.errors import ConvergenceError
+from tactsim.errors import ConvergenceError, TooShort
 from tactsim.fem.paths.time_steps import TimeControl, TimeEvent, TimeMarcher
 
 
@@ -64,6 +64,32 @@ def test_a_step_that_never_converges_gives_up_with_its_time():
     with pytest.raises(ConvergenceError, match=r"gave up at (1|0\.9999\d*) s: too far"):
         list(marcher.march(Clock(0.0), [5.0], largest=1.0))
     assert marcher.rejected > 5
+
+
+def hidden(until, *, first=1e-9):
+    """Steps whose load cannot be seen before a time."""
+
+    def advance(now, time, guess):
+        if time < until:
+            raise TooShort("hidden")
+        return Clock(time, time - now.time)
+
+    return TimeMarcher(advance, lambda state: state.step**3, TimeControl(1e-3, first=first, smallest=1e-12))
+
+
+def test_a_step_that_is_too_short_is_lengthened_beyond_stops_that_no_step_can_end_at():
+    marcher = hidden(1e-3)
+    times = [state.time for state, _ in marcher.march(Clock(0.0), [1e-6, 1e-5, 1e-4, 1e-2, 1.0], largest=1.0)]
+    assert 1e-3 <= times[0] <= 1e-2
+    assert 1e-2 in times
+    assert times[-1] == 1.0
+    assert marcher.rejected >= 3
+
+
+@pytest.mark.parametrize(("stops", "largest"), [([1.0], 1.0), ([0.5, 1.0], 1e-3)])
+def test_a_load_that_the_longest_step_hides_gives_up(stops, largest):
+    with pytest.raises(ConvergenceError, match="gave up at 0 s: hidden"):
+        list(hidden(2.0).march(Clock(0.0), stops, largest=largest))
 
 
 def test_an_error_that_never_falls_gives_up():

@@ -19,6 +19,7 @@ from tactsim.mechanics.paths.loading import DisplacementLoading, ForceLoading
 from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.plotting import figures_for
 from tactsim.relaxation import Relaxation
+from tactsim.results.result import Status
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 FADING = Relaxation(fractions=(0.4, 0.2), times=(0.1, 2.0))
@@ -194,3 +195,23 @@ def test_a_tissue_a_thousand_times_softer_in_the_end_is_the_same_by_either_const
         return float(result.quantities["reaction_force"].value)
 
     assert force(2e3, "equilibrium") == pytest.approx(force(2e6, "instantaneous"), rel=1e-9)
+
+
+STIFF_AT_ONCE = {"material": "atrial", "time": TimeSettings(tolerance=2e-2, per_decade=1)}
+"""A thousandth of a percent of its stiffness lasts, and it relaxes within microseconds."""
+
+
+def test_a_ramp_of_force_starts_with_a_step_that_its_round_off_does_not_hide():
+    """After 9 ns, a thousandth of the shortest relaxation time, the force is half of the round-off of the contact."""
+    result = thin(loading=forced({"kind": "ramp", "to": 1e-3, "duration": 0.1}), **STIFF_AT_ONCE).run()
+    assert result.status is Status.CONVERGED
+    assert float(result["reaction_force"].value) == pytest.approx(1e-3, rel=1e-6)
+
+
+def test_under_a_force_the_contact_of_tissue_that_relaxes_becomes_softer_where_steps_fail():
+    """Without that steps fail at 57 points of which some open and close by turns, and it takes two and a half times as long."""
+    result = thin(loading=forced({"kind": "jump", "to": 10e-3, "duration": 0.3}), **STIFF_AT_ONCE).run()
+    assert result.status is Status.CONVERGED
+    stiff = 129.907e-6  # the displacement by the contact that stays as stiff as the jump asked
+    assert float(result["displacement"].value) == pytest.approx(stiff, rel=1e-3)
+    assert 1e-9 < float(result["max_penetration"].value) < thin().tolerance, "a contact that stays stiff leaves 0.05 nm"
