@@ -10,7 +10,7 @@ import os
 import sys
 from collections.abc import Mapping, Sequence
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any, Literal, get_args, get_origin, get_type_hints
+from typing import TYPE_CHECKING, Any, Literal, Self, get_args, get_origin, get_type_hints
 
 from pydantic import BaseModel, ConfigDict, ValidationError
 from pydantic.fields import FieldInfo
@@ -84,6 +84,9 @@ class _MadeInPython(ModelMetaclass):
         named = dict(zip(_by_key(cls), values, strict=False))  # type: ignore[arg-type]
         if len(named) < len(values):
             raise TypeError(f"{cls.__name__} takes at most {len(named)} values by position, {len(values)} were given")
+        for name, value in (named | fields).items():
+            if isinstance(value, set | frozenset):
+                raise InputError(f"{cls.__name__}: {name}: {shown(value)} has no order; expected a list")
         if twice := named.keys() & fields.keys():
             raise TypeError(f"{cls.__name__}: {', '.join(sorted(twice))} is given by position and by name")
         try:
@@ -99,6 +102,26 @@ class FrozenModel(BaseModel, metaclass=_MadeInPython):
     """A closed, immutable value: unknown keys, NaN and later changes are errors."""
 
     model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+
+    def __setattr__(self, name: str, value: Any) -> None:
+        if name in type(self).model_fields:
+            cls = type(self).__name__
+            raise InputError(f"{cls}: {name} cannot be changed; another value has it: .model_copy(update={{{name!r}: ...}})")
+        super().__setattr__(name, value)
+
+    def model_copy(self, *, update: Mapping[str, Any] | None = None, deep: bool = False) -> Self:
+        """The same value with some of its fields changed, which are refused as where a value is made.
+
+        Raises
+        ------
+        InputError
+            If a field is unknown, or what is given for it is wrong.
+        """
+        if not update:
+            return super().model_copy(deep=deep)
+        keys = {name: field.alias or name for name, field in type(self).model_fields.items()}
+        given = {keys[name]: getattr(self, name) for name in self.model_fields_set}
+        return type(self)(**given | {keys.get(name, name): value for name, value in update.items()})
 
 
 def _with_units(value: Any) -> Any:

@@ -130,8 +130,10 @@ def conversion(given_unit: str, unit: str) -> float:
     """
     try:
         return factor_to(unit or "1", given_unit or "1") if (unit or "1") != (given_unit or "1") else 1.0
-    except ValueError:
+    except OtherDimension:
         raise InvalidQuantity(f"{shown(unit)} is not a unit of what is in {shown(given_unit)}") from None
+    except ValueError:
+        raise InvalidQuantity(f"{shown(unit)} is no unit that is known, such as {shown(given_unit)}") from None
 
 
 def compact_unit(value: float, unit: str) -> str:

@@ -407,6 +407,34 @@ def test_more_values_than_fields_are_refused() -> None:
         ts.Sphere((0, 0, 0), center=(1, 1, 1), radius="4 mm")
 
 
+def test_a_changed_copy_is_refused_as_the_value_is_where_it_is_made() -> None:
+    press = ts.ClosedForm.example()
+    assert press.model_copy(update={"outer_radius": "4 mm"}).outer_radius == 4e-3
+    for wrong, words in {
+        ("outer_radus", "4 mm"): "outer_radus: unknown key .did you mean 'outer_radius'",
+        ("outer_radius", "4 kPa"): "outer_radius: '4 kPa' has the wrong dimension",
+        ("outer_radius", -1.0): "outer_radius",
+    }.items():
+        with pytest.raises(ts.InputError, match=words):
+            press.model_copy(update=dict([wrong]))
+    with pytest.raises(ts.InputError, match=r"cannot be changed; .*model_copy"):
+        press.outer_radius = 4e-3  # type: ignore[misc]
+    grasp = ts.Grasp.example()
+    copied = grasp.model_copy(update={"contact": {"kind": "coulomb", "friction": 0.3}})
+    assert copied.model_fields_set == grasp.model_fields_set | {"contact"}, "what was not given stays a default"
+
+
+def test_a_set_has_no_order() -> None:
+    with pytest.raises(ts.InputError, match=r"size: .*has no order; expected a list"):
+        ts.Block(size={"40 mm", "41 mm", "20 mm"}, tissue="icf_stable")
+
+
+def test_a_case_is_not_written_over_a_folder(tmp_path: Path) -> None:
+    for wrong, words in {tmp_path: "is a folder; name the file", None: "save_case: needed: a path"}.items():
+        with pytest.raises(ts.TactsimError, match=words):
+            ts.save_case(ts.ClosedForm.example(), wrong, force=True)  # type: ignore[arg-type]
+
+
 def test_kinds_are_listed_by_the_name_of_their_point() -> None:
     assert ts.kinds("experiment")["grasp"] is ts.Grasp
     assert "annulus" in ts.kinds("body")

@@ -14,6 +14,7 @@ from tactsim.case.model import Case
 from tactsim.errors import InputError, StorageError, shown
 from tactsim.interfaces import Experiment, Material
 from tactsim.materials.library import LIBRARY
+from tactsim.outside.files import named_path
 from tactsim.outside.text import one_line
 from tactsim.storage.files import naming, write_bytes
 
@@ -42,13 +43,15 @@ def save_case(case: Case | Experiment, path: str | Path, *, force: bool = False)
     Raises
     ------
     InputError
-        If it is neither.
+        If it is neither, or the path is none.
     StorageError
-        If the file exists and ``force`` is not given, or it cannot be written.
+        If the path is a folder, the file exists and ``force`` is not given, or it cannot be written.
     """
     if not isinstance(case, Case | Experiment):
         raise InputError(f"save_case: {shown(case)} is neither a case nor an experiment")
-    place = Path(path)
+    place = named_path(path, "save_case")
+    if place.is_dir():
+        raise StorageError(f"{one_line(place)} is a folder; name the file to write in it")
     if place.exists() and not force:
         raise StorageError(f"{one_line(place)} exists; pass force=True to replace it")
     with naming(place):

@@ -37,6 +37,10 @@ LONGEST = 6 * 3600.0
 """Time in s after which writing is given up: no disk is so slow."""
 
 
+HDF5 = (".h5", ".hdf5")
+"""Endings of files; folders have none."""
+
+
 def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str] | None = None) -> int:
     """Writes the samples that are done, of all splits or some, and returns how many.
 
@@ -46,11 +50,14 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
     Raises
     ------
     InputError
-        If h5py or pyarrow is missing, or the split is empty or unknown.
+        If the place has another ending, h5py or pyarrow is missing, or the split is empty or unknown.
     StorageError
         If the place exists or cannot be written.
     """
     target = Path(place)
+    if target.suffix[1:].isalpha() and target.suffix not in HDF5:
+        allowed = f"{' or '.join(HDF5)} for a file, no ending for a folder of Parquet and npz"
+        raise InputError(f"{one_line(target)} ends in {target.suffix}; allowed: {allowed}")
     _refuse_inside(target, Path(store))
     with only_one(
         target, f"{one_line(target)} is being written by another export; wait for it or choose another place with --to"
@@ -63,7 +70,7 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
         if not data.sizes["sample"]:
             raise InputError(f"{one_line(store)} has no sample that is done{f' in {split}' if split else ''}")
         with built_beside(target) as waiting, naming(target):
-            if target.suffix in (".h5", ".hdf5"):
+            if target.suffix in HDF5:
                 _hdf5_apart(store, split, waiting, target)
             else:
                 _shards(data, Store.open(store).attributes | {"failed": _failed(store, split)}, waiting)

@@ -81,15 +81,14 @@ class IndentationRecord(ContactRecord[PressedModel]):
         """History values of a state in SI."""
         model, contact = self.model, state.contact
         displacement = model.displacement(contact.unknowns)
-        touches = [one.at(displacement) for one in contact.contacts]
-        forces = [model.force(touch.traction) for touch in touches]
+        forces = [model.force(one.state.traction) for one in contact.contacts]
         values = {} if self._clock is None else {"time": state.time}
         values |= {
             "displacement": contact.load,
             "reaction_force": float(forces[0][-1]),
             "base_force": float(model.base_force(contact, state.relaxation)[-1]),
-            "max_penetration": max(0.0, *(float(-touch.gap.min()) for touch in touches)),
-            "max_pressure": max(float(touch.pressure.max()) for touch in touches),
+            "max_penetration": max(0.0, *(float(-one.gap(displacement).min()) for one in contact.contacts)),
+            "max_pressure": max(float(one.state.pressure.max()) for one in contact.contacts),
             **self.quality.values(model.body, contact),
         }
         if isinstance(model, SolidModel):
@@ -139,7 +138,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         """Vectors of force and moment at the last kept state, and the pressure around an annulus."""
         _, state = max(self._kept.values(), key=_time_of)
         contact, unknowns = state.contact.contacts[0], state.contact.unknowns
-        force = model.force(contact.at(model.displacement(unknowns)).traction)
+        force = model.force(contact.state.traction)
         moment = model.moment(contact, unknowns)
         quantities = {
             "force_vector": Quantity(force.tolist(), "N", "force (x, y, z) of the whole tissue on the body"),
@@ -220,7 +219,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         displacement = model.displacement(state.contact.unknowns)
         weights, edges = model.points.weights, (-1, model.points.per_facet)
         area = weights.reshape(edges).sum(axis=1)
-        pressures = [contact.at(displacement).pressure for contact in state.contact.contacts]
+        pressures = [contact.state.pressure for contact in state.contact.contacts]
         at_points = (model.reference + displacement)[0], np.sum(pressures, axis=0)
         radius, pressure = ((weights * values).reshape(edges).sum(axis=1) / area for values in at_points)
         if not pressure.any():

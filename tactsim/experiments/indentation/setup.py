@@ -108,8 +108,8 @@ class IndentationSetup(FrozenModel):
     """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
     penetration_tolerance: Annotated[Length, Field(ge=1e-10)] | None = None
     """Largest penetration at any surface quadrature point; by default 1e-4 of the radius of the body, or of a narrower specimen,
-    at most 2e-3 of a prescribed displacement. At most a tenth of that displacement, of the contact's width, of a fillet and of
-    the thinnest layer."""
+    3e-4 where a body in space leans or is off the axis, at most 2e-3 of a prescribed displacement. At most a tenth of that
+    displacement, of the contact's width, of a fillet and of the thinnest layer."""
     mesh: MeshSettings = MeshSettings()
     """Size of the elements."""
 
@@ -202,7 +202,12 @@ class IndentationSetup(FrozenModel):
     @property
     def tolerance(self) -> float:
         """Largest penetration in m."""
-        return self.penetration_tolerance or default_penetration(1e-4 * self.contact_radius, self.prescribed)
+        return self.penetration_tolerance or default_penetration(self._usual_penetration * self.contact_radius, self.prescribed)
+
+    @property
+    def _usual_penetration(self) -> float:
+        """Penetration over the body's radius that is allowed where the case does not say."""
+        return 1e-4
 
     def section(self) -> GradedSection:
         """The section of the specimen, its elements smallest at the edges of the body or around its tip."""

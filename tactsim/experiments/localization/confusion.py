@@ -15,7 +15,14 @@ from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, Source
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
-from tactsim.experiments.localization.source import folder_words, readings_of, reference_notes, stored_grasp, with_reference
+from tactsim.experiments.localization.source import (
+    folder_words,
+    readings_of,
+    reference_notes,
+    stored_grasp,
+    unfinished_notes,
+    with_reference,
+)
 from tactsim.interfaces import Experiment, Inclusion
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
@@ -64,9 +71,12 @@ class Confusion(Experiment):
     def begin(self) -> Course:
         """One step per grasp, with the share of its draws whose class was estimated right."""
         plain, counted = stored_grasp(self.reference), _Counted()
-        doubts = reference_notes(plain.scene_as(GraspScene).true_inclusions)
-        readings = self._readings(plain)
-        return Course(self._estimated(readings, counted), lambda: self._findings(counted, doubts))
+        stored = [stored_grasp(folder) for folder in self.grasps]
+        doubts = [*unfinished_notes(plain, self.reference), *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
+        for folder, grasp in zip(self.grasps, stored, strict=True):
+            doubts += [note for note in unfinished_notes(grasp, folder) if note not in doubts]
+        readings = self._readings(plain, stored)
+        return Course(self._estimated(readings, counted), lambda: self._findings(counted, tuple(doubts)))
 
     def _estimated(self, readings: Sequence[tuple[str, str, Readings]], counted: _Counted) -> Iterator[StepRecord]:
         for number, (name, true, one) in enumerate(readings):
@@ -90,13 +100,12 @@ class Confusion(Experiment):
             scene=ConfusionScene(classes=CLASSES, grasps=tuple(counted.judged), estimator=self.estimator.kind),
         )
 
-    def _readings(self, reference: Result) -> list[tuple[str, str, Readings]]:
+    def _readings(self, reference: Result, grasps: Sequence[Result]) -> list[tuple[str, str, Readings]]:
         """Name, true class, and readings with reference and response of every grasp."""
         plain = readings_of(reference, self.readings, noise=self.noise)
         response = stored_response(self.reference) if self.estimator.needs_response else None
         readings = []
-        for folder in self.grasps:
-            stored = stored_grasp(folder)
+        for folder, stored in zip(self.grasps, grasps, strict=True):
             shapes = [shape.kind for shape in stored.scene_as(GraspScene).true_inclusions]
             true = class_of(shapes)
             if true is None:

@@ -16,11 +16,11 @@ from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.experiments.localization.source import (
     away_from_truth,
-    folder_words,
     readings_of,
     reference_notes,
     stiffness_ratios,
     stored_grasp,
+    unfinished_notes,
     with_reference,
 )
 from tactsim.interfaces import Experiment
@@ -35,7 +35,7 @@ from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.outside.input_path import InputPath
 from tactsim.progress import elapsed_time
 from tactsim.results.quantity import Quantity
-from tactsim.results.result import Result, Status, rows
+from tactsim.results.result import Result, rows
 from tactsim.units import Force, NonNegative, format_quantity
 
 NO_ERROR = 1e-9
@@ -134,9 +134,7 @@ class Localization(Experiment):
         return dead
 
     def _warnings(self, stored: Result, plain: Result | None, readings: Readings) -> list[str]:
-        warnings = []
-        if stored.status is not Status.CONVERGED:
-            warnings.append(f"the grasp in {folder_words(self.grasp)} ended as {stored.status.value} ({stored.reason})")
+        warnings = [*unfinished_notes(stored, self.grasp)]
         if readings.valid is not None:
             warnings.append(f"dead or saturated taxels, interpolated from their neighbours: {int((~readings.valid).sum())}")
         silent = silent_taxels(readings.filled)

@@ -20,7 +20,7 @@ from tactsim.interfaces.readings import Readings
 from tactsim.materials.homogeneous import stiffness_ratio
 from tactsim.refusals import first_fault
 from tactsim.results.reading import read_basis, read_result
-from tactsim.results.result import Result
+from tactsim.results.result import Result, Status
 from tactsim.units import format_quantity
 
 SAME_CLOSING = 1e-3
@@ -139,6 +139,13 @@ def reference_notes(inclusions: Sequence[Inclusion]) -> tuple[str, ...]:
         return ()
     what = "an inclusion" if len(inclusions) == 1 else f"{len(inclusions)} inclusions"
     return (f"the reference holds {what} of another material than the tissue: only what differs from it can be found",)
+
+
+def unfinished_notes(grasp: Result, folder: str) -> tuple[str, ...]:
+    """What the user must know of a stored grasp that did not come to its end."""
+    if grasp.status is Status.CONVERGED:
+        return ()
+    return (f"the grasp in {folder_words(folder)} ended as {grasp.status.value} ({grasp.reason})",)
 
 
 def away_from_truth(center: Array, places: Array) -> tuple[Array, float, float]:

@@ -167,5 +167,5 @@ def _warnings(arrays: dict[str, Array], alpha: float) -> list[str]:
     if not (forces > 0).any():
         warnings.append("no element reads a force: the bands are black")
     if beyond:
-        warnings.append(f"{beyond} readings above {format_quantity(alpha, 'N')} are drawn as it")
+        warnings.append(f"readings above {format_quantity(alpha, 'N')}, which are drawn as it: {beyond}")
     return warnings

@@ -108,8 +108,8 @@ def contact_equilibrium(
             raise Collapsed(
                 f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
-        if found := _softened(problem, state, load, guess, action) or _approached(problem, state, load, guess, action):
-            return found
+        if reached := _softened(problem, state, load, guess, action) or _approached(problem, state, load, guess, action):
+            return reached
         if not 0 < load - state.load <= SNAP_STEP * load:
             raise
     return _after_snap(problem, state, load, action)
@@ -122,8 +122,10 @@ def _softened(
     if action.relaxation is None:
         return None
     softer = state.regularisation.softened(max(float(contact.state.pressure.max()) for contact in state.contacts))
+    if softer is None:
+        return None
     try:
-        return softer and _equilibrium(problem, replace(state, regularisation=softer), load, guess, action)
+        return _equilibrium(problem, replace(state, regularisation=softer), load, guess, action)
     except ConvergenceError:
         return None
 

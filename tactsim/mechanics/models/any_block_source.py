@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Annotated, Literal
+from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
@@ -23,6 +23,10 @@ from tactsim.mechanics.models.block_source import (
 class AutomaticSource(BlockSource):
     """Graded cells where they can follow the inclusions; tetrahedra around free forms, and bodies below the edge of a jaw."""
 
+    finer: ClassVar[str] = (
+        "take a smaller edge_size at the edges of the jaws, a smaller inclusion_size at an inclusion, both under mesh.graded, or "
+        "mesh.tetrahedra where these are taken"
+    )
     kind: Literal["automatic"] = "automatic"
     graded: GradedSource = GradedSource()
     """The cells around spheres, ellipsoids and tubes."""

@@ -93,7 +93,11 @@ class SizedSource(MesherSettings, BlockSource):
 class TetrahedraSource(SizedSource):
     """Tetrahedra that follow the inclusions, made once and kept."""
 
+    usual: ClassVar[dict[str, float]] = SizedSource.usual | {"size": 3e-3}
+    """With 3.3 mm taxels that should be equal differed by up to 0.39 % of the largest, with 3 mm by 0.2 %."""
     kind: Literal["tetrahedra"] = "tetrahedra"
+    size: Positive[Length] | None = None
+    """Edge length far from inclusions and jaw edges; by default 3 mm, or 0.15 of the block's least side if that is less."""
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
         """The mesh of a block of this size in m, shipped, from the cache, or made now; finer at the edges of narrow ``flats``."""

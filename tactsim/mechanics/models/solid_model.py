@@ -43,7 +43,7 @@ class SolidModel(PressedModel):
 
     def moment(self, contact: PosedContact, unknowns: Array) -> Array:
         """Moment (3,) in N m of the force of the whole tissue on a body about the body's reference point."""
-        traction = -contact.at(self.displacement(unknowns)).traction
+        traction = -contact.state.traction
         arms = self.reference + self.displacement(unknowns) - contact.place[:, None]
         moment = np.cross(arms.T, traction.T).T @ self.points.weights
         mirrors = self.symmetry.mirrors
@@ -51,7 +51,7 @@ class SolidModel(PressedModel):
 
     def surroundings(self, contact: PosedContact, unknowns: Array, sectors: int) -> Array:
         """Force (sectors,) in N of the whole tissue along a body's axis, by the angle about it, from its own x axis on."""
-        traction = -contact.at(self.displacement(unknowns)).traction
+        traction = -contact.state.traction
         points = self.reference + self.displacement(unknowns) - contact.place[:, None]
         force = np.zeros(sectors)
         for mirror in self.symmetry.mirrors:

@@ -45,8 +45,7 @@ def voltages_figure(result: Result) -> Figure:
             _draw_voltages(row[0], result, factor * voltages[:, jaw])
             _draw_forces(row[1], applied[jaw], read[jaw])
             row[0].set_ylabel(f"voltage in {unit}")
-            dotted = " (dotted)" if len(result.steps) <= MOST_DOTTED else ""
-            row[0].set_title(f"{side} jaw; straight between the {len(result.steps)} solved steps{dotted}", loc="left")
+            row[0].set_title(f"{side} jaw; straight between {_solved(result)}", loc="left")
         axes[1, 0].set_xlabel("time in s")
         axes[1, 1].set_xlabel("taxel, row and column")
         axes[0, 1].set_ylim(top=1.18 * axes[0, 1].get_ylim()[1])  # room for the legend above the bars
@@ -54,6 +53,13 @@ def voltages_figure(result: Result) -> Figure:
         for axis in axes.flat:
             despined(axis)
     return figure
+
+
+def _solved(result: Result) -> str:
+    """The solved steps in words; of a stored grasp that is read once more, whose history holds readings, without their number."""
+    if len(result.steps) == len(result.quantities["readout_time"].numbers):
+        return "the solved steps of the grasp"
+    return f"the {len(result.steps)} solved steps{' (dotted)' if len(result.steps) <= MOST_DOTTED else ''}"
 
 
 def _draw_voltages(axis: Axes, result: Result, voltage: Array) -> None:

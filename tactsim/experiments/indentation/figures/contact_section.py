@@ -126,8 +126,8 @@ def top_of_words(scene: PressedBodyScene, height: float, half: float) -> float:
 
 
 def _window(section: Section, radius: float, height: float) -> tuple[float, float, float]:
-    """Half width, bottom and top of the picture in mm, under a body of a radius and at a height in mm."""
+    """Half width, bottom and top of the picture in mm, under a body of a radius and at a height in mm, which may be deep down."""
     half = min(1.03 * float(section.places[:, 0].max()), SHOWN_RADII * radius)
-    bottom, top = max(section.places[:, 1].min(), -half), section.places[section.places[:, 0] <= half, 1].max()
+    bottom, top = max(section.places[:, 1].min(), min(0.0, height) - half), section.places[section.places[:, 0] <= half, 1].max()
     margin = 0.03 * (top - bottom)
     return half, float(bottom - margin), float(max(top, height) + 0.2 * min(half, radius) + margin)

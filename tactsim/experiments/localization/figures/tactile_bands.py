@@ -7,6 +7,7 @@ from typing import Literal
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+from matplotlib.ticker import MaxNLocator
 
 from tactsim.array import Array
 from tactsim.experiments.localization.scene import BandsScene
@@ -64,4 +65,5 @@ def _draw(axis: Axes, levels: Array, words: str) -> None:
         extent=(0.5, levels.shape[1] + 0.5, 0, 1),
     )
     axis.set_yticks([])
+    axis.xaxis.set_major_locator(MaxNLocator(integer=True))
     axis.set_title(words, fontsize=9, loc="left")

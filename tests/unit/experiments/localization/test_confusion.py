@@ -7,6 +7,7 @@ from scenes import grasp_scene, unmarked_figures
 
 from tactsim.errors import InputError
 from tactsim.experiments.localization.confusion import Confusion
+from tactsim.experiments.localization.source import folder_words
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.mesh.inclusions.sphere import Sphere
@@ -18,14 +19,14 @@ SPHERE = Sphere(center=(20e-3, 20e-3, 12e-3), radius=5e-3)
 LUMP = PLAIN + np.outer([1.0, 0.5], np.eye(9)[4]).reshape(2, 3, 3)
 
 
-def stored(folder, forces, inclusions):
+def stored(folder, forces, inclusions, status=Status.CONVERGED):
     layout = TaxelLayout()
     quantities = {"displacement": Quantity(1e-3, "m", "")}
     for jaw, side in enumerate(("upper", "lower")):
         quantities[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
     scene = grasp_scene([40e-3, 40e-3, 20e-3], layout, inclusions, width=40e-3, depth=40e-3)
     step = StepRecord(1, 3, 0.0, {"displacement": 1e-3})
-    result = Result("grasp", Status.CONVERGED, "", quantities, steps=(step,), units={"displacement": "m"}, scene=scene)
+    result = Result("grasp", status, "by the user", quantities, steps=(step,), units={"displacement": "m"}, scene=scene)
     return str(write_result(result, folder, case_id="0" * 16, provenance={}))
 
 
@@ -55,6 +56,14 @@ def test_classes_are_counted(folders):
     assert result.quantities["recalls"].value == [1.0, 0.5, None, None, None]
     assert unmarked_figures(result) == []
     assert str(folders["lump"]) not in str(result.scene)
+
+
+def test_grasps_that_did_not_come_to_their_end_are_told_of_once(folders, tmp_path):
+    cut = stored(tmp_path / "cut", LUMP, (SPHERE,), Status.INTERRUPTED)
+    (warning,) = run(folders | {"cut": cut}, "lump", "cut", "cut").warnings
+    assert warning == f"the grasp in {folder_words(cut)} ended as interrupted (by the user)"
+    assert run(folders, "lump").warnings == ()
+    assert len(run(folders | {"cut": cut}, "lump", reference=cut).warnings) == 2, "it holds a lump, too"
 
 
 def test_a_reference_that_holds_a_lump_is_warned_of(folders):

@@ -25,7 +25,7 @@ def test_levels_and_band_follow_the_equations_by_hand():
     assert result["levels_upper"].numbers == pytest.approx([63.75, 255.0, 127.5], rel=EXACT)  # 255 V / alpha, at most 255
     band = 255 * np.minimum(np.array([0.1, 0.3, 0.5, 0.35, 0.2]) / 0.4, 1.0)  # halfway between neighbours
     assert result["band_upper"].numbers == pytest.approx(band, rel=EXACT)
-    assert "1 readings above 400 mN" in " ".join(result.warnings)
+    assert "readings above 400 mN, which are drawn as it: 1" in " ".join(result.warnings)
 
 
 def test_the_largest_reading_of_both_arrays_is_white():
