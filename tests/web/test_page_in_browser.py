@@ -33,7 +33,7 @@ from tactsim.live.sources.feed import Feed
 
 PACKAGES = {"chromium": "chromium", "chromedriver": "chromium-driver"}
 FLAGS = """--headless=new --no-sandbox --disable-gpu --use-angle=swiftshader --enable-unsafe-swiftshader --disable-quic
---no-first-run --disable-background-networking --disable-component-update --disable-sync --window-size=1280,800"""
+--no-first-run --disable-background-networking --disable-component-update --disable-sync --window-size=1024,640"""
 PATIENCE = 60.0
 """Time in s for what takes a second on an idle machine."""
 COLOURED = """
@@ -206,6 +206,8 @@ def test_a_result_shows_its_numbers_turns_plays_and_changes_estimators(browser: 
         until(lambda: shows(browser, 0.75 * forces))
         body.send_keys(Keys.HOME)
         until(lambda: shows(browser, 0.25 * forces))
+        body.send_keys(Keys.ARROW_RIGHT, Keys.ARROW_RIGHT)  # the last quarter plays in a second
+        until(lambda: shows(browser, 0.75 * forces))
         count = drawn(browser)
         body.send_keys(Keys.SPACE)
         until(lambda: shows(browser, forces) and words(browser, "play") == "Play")

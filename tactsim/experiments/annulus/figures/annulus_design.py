@@ -74,7 +74,8 @@ def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
     coloured = np.ma.masked_invalid(force)
     shading: Literal["nearest", "gouraud"] = "nearest" if np.ma.is_masked(coloured) else "gouraud"  # no cell with a masked corner
     drawn = axis.pcolormesh(ratio, recess, coloured, norm=norm, cmap="viridis", shading=shading, rasterized=True)
-    axis.set(xlim=(ratio[0], ratio[-1]), ylim=(recess[0], recess[-1]))  # nearest reaches half a cell beyond
+    if shading == "nearest" and min(force.shape) > 1:  # whose cells reach half of one beyond
+        axis.set(xlim=(ratio[0], ratio[-1]), ylim=(recess[0], recess[-1]))
     for limit, colour in zip(_limits(result), LIMIT_COLOURS, strict=True):
         if np.nanmin(force) < limit < np.nanmax(force):
             axis.contour(*_finer(ratio, recess, force), levels=[np.log(limit)], colors=[colour], linewidths=2)
