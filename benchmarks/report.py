@@ -2,7 +2,7 @@
 
 python benchmarks/report.py [PART ...] [--all] [--stale] [--keep]
 
-Without names all parts but the long ones are measured, with ``--all`` those too. ``--keep`` puts the figures of each part into
+Without names all parts but the long ones are measured, with ``--all`` those too; ``against:JOB,JOB`` measures some jobs of that part. ``--keep`` puts the figures of each part into
 ``measured.json``, which holds the newest of every part, and into ``history.csv``, and writes the README's table from the former.
 """
 
@@ -65,18 +65,26 @@ Measurement = dict[str, Any]
 def table(measured: dict[str, Measurement]) -> str:
     """Markdown table of what is asked and what was measured at which commit, and the machines below."""
     taken = [(measured[name], part.rows(measured[name]["figures"])) for name, part in PARTS.items() if name in measured]
-    lines = [f"| {' | '.join((*row, part['commit']))} |" for part, rows in taken for row in rows]
+    rows = [(*row, commit) for part, found in taken for row, commit in zip(found, _commits(part, len(found)), strict=True)]
+    lines = [f"| {' | '.join(row)} |" for row in rows]
     machines = "; ".join(dict.fromkeys(part["machine"] for part, _ in taken))
     days = sorted({part["day"] for part, _ in taken})
     period = " to ".join(dict.fromkeys((days[0], days[-1])))
     return "\n".join(["| what | asked | measured | commit |", "|---|---|---|---|", *lines, "", f"On {machines}; {period}."])
 
 
+def _commits(part: Measurement, rows: int) -> list[str]:
+    """The commit of each row of a part: that of the part, or of the job that was measured by itself."""
+    own = part.get("commits", {})
+    return [own.get(job, part["commit"]) for job in part["figures"]] if own else [part["commit"]] * rows
+
+
 def measured_parts(names: Sequence[str]) -> Iterator[tuple[str, Measurement]]:
     """Each part as soon as it is measured, so that hours of figures outlive one that fails."""
     for name in names:
         sys.stderr.write(f"{name}\n")
-        figures = PARTS[name].measure()
+        part, _, jobs = name.partition(":")
+        figures = PARTS[part].measure(jobs.split(",")) if jobs else PARTS[part].measure()
         yield name, {**_state(), "day": history.today(), "commit": history.commit(), "figures": figures}
 
 
@@ -95,11 +103,19 @@ def is_stale(part: Measurement | None) -> bool:
 
 
 def keep(name: str, part: Measurement) -> None:
-    """Put a part into `MEASURED` and the history, and write the README's table anew."""
-    parts = kept_parts() | {name: part}
+    """Put a part, or some jobs of it beside the others, into `MEASURED` and the history, and write the README's table anew."""
+    name, _, jobs = name.partition(":")
+    parts = kept_parts()
+    parts[name] = _with_jobs(parts[name], part) if jobs and name in parts else part
     MEASURED.write_text(json.dumps(parts, indent=1) + "\n")
     history.append({name: part["figures"]})
     README.write_text(with_table(README.read_text(), table(parts)))
+
+
+def _with_jobs(part: Measurement, newer: Measurement) -> Measurement:
+    """A part with the figures of some jobs measured anew, which have a commit of their own."""
+    commits = part.get("commits", {}) | dict.fromkeys(newer["figures"], newer["commit"])
+    return {**part, "figures": part["figures"] | newer["figures"], "commits": commits}
 
 
 def with_table(readme: str, text: str) -> str:
@@ -116,7 +132,7 @@ def main() -> None:
     parser.add_argument("--stale", action="store_true", help="only parts whose kept figures are of another state or machine")
     parser.add_argument("--keep", action="store_true", help="keep the figures, and write the README's table of all kept ones")
     arguments = parser.parse_args()
-    unknown = set(arguments.parts) - set(PARTS)
+    unknown = {name.partition(":")[0] for name in arguments.parts} - set(PARTS)
     if unknown:
         parser.error(f"no such part: {', '.join(unknown)}")
     names = arguments.parts or [name for name in PARTS if arguments.all or name not in LONG]
