@@ -2,8 +2,9 @@
 
 python benchmarks/report.py [PART ...] [--all] [--stale] [--keep]
 
-Without names all parts but the long ones are measured, with ``--all`` those too; ``against:JOB,JOB`` measures some jobs of that part. ``--keep`` puts the figures of each part into
-``measured.json``, which holds the newest of every part, and into ``history.csv``, and writes the README's table from the former.
+Without names all parts but the long ones are measured, with ``--all`` those too; ``against:JOB,JOB`` measures some jobs of that
+part. ``--keep`` puts the figures of each part into ``measured.json``, which holds the newest of every part, and into
+``history.csv``, and writes the README's table from the former.
 """
 
 from __future__ import annotations
@@ -106,13 +107,13 @@ def keep(name: str, part: Measurement) -> None:
     """Put a part, or some jobs of it beside the others, into `MEASURED` and the history, and write the README's table anew."""
     name, _, jobs = name.partition(":")
     parts = kept_parts()
-    parts[name] = _with_jobs(parts[name], part) if jobs and name in parts else part
+    parts[name] = with_jobs(parts[name], part) if jobs and name in parts else part
     MEASURED.write_text(json.dumps(parts, indent=1) + "\n")
     history.append({name: part["figures"]})
     README.write_text(with_table(README.read_text(), table(parts)))
 
 
-def _with_jobs(part: Measurement, newer: Measurement) -> Measurement:
+def with_jobs(part: Measurement, newer: Measurement) -> Measurement:
     """A part with the figures of some jobs measured anew, which have a commit of their own."""
     commits = part.get("commits", {}) | dict.fromkeys(newer["figures"], newer["commit"])
     return {**part, "figures": part["figures"] | newer["figures"], "commits": commits}
@@ -141,7 +142,7 @@ def main() -> None:
         names = [name for name in names if is_stale(before.get(name))]
     measured = {}
     for name, part in measured_parts(names):
-        measured[name] = part
+        measured[name.partition(":")[0]] = part
         if arguments.keep:
             keep(name, part)
     if measured:

@@ -14,7 +14,7 @@ from tactsim.fem.paths.progress import Headway, check_steps
 from tactsim.fem.paths.states import PathState, beyond
 
 LENGTHENED = 10.0
-"""Factor by which a step is longer whose load was hidden in round-off."""
+"""Factor by which a first step is longer whose load was hidden in round-off; later ones, of loads that go, are shorter then."""
 
 
 class TimedState(PathState, Protocol):
@@ -99,16 +99,15 @@ class TimeMarcher(Generic[State]):
                     if event is not None and happened:
                         around, width = {**path, reached.time: reached}, event.tolerance * (reached.time - now.time)
                         reached = located(partial(self._advance, now), event.value, around, width)
-                except TooShort as failure:
-                    self.rejected += 1
-                    if step >= largest or stop == stops[-1] <= now.time + step:
-                        raise ConvergenceError(f"gave up at {now.time:.6g} s: {failure}", failure.history) from failure
-                    wanted = LENGTHENED * step
-                    if stop <= now.time + step:
-                        break  # no step can end at this stop
-                    continue
                 except ConvergenceError as failure:
                     self.rejected += 1
+                    if isinstance(failure, TooShort) and now is start:
+                        if step >= largest or stop == stops[-1] <= now.time + step:
+                            raise ConvergenceError(f"gave up at {now.time:.6g} s: {failure}", failure.history) from failure
+                        wanted = LENGTHENED * step
+                        if stop <= now.time + step:
+                            break  # no step can end at this stop
+                        continue
                     error = error if isinstance(failure, _TooLong) else 4 * self._control.tolerance
                     wanted = self._control.next_step(step, error, 0)
                     if wanted < self._control.smallest:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import importlib
-import json
 from pathlib import Path
 from types import ModuleType
 
@@ -94,20 +93,14 @@ def test_parts_of_other_states_stand_with_their_commit_day_and_machine(report: M
     assert row(text, "`annulus_icf.yaml`")[-1] == "c0ffee1"
 
 
-def test_a_job_that_was_measured_by_itself_has_a_commit_of_its_own(report: ModuleType, monkeypatch, tmp_path: Path) -> None:
-    for name in ("MEASURED", "README"):
-        monkeypatch.setattr(report, name, tmp_path / name)
-    monkeypatch.setattr(report.history, "append", lambda figures: None)
-    report.README.write_text(f"{report.START}\n{report.END}")
+def test_a_job_that_was_measured_by_itself_has_a_commit_of_its_own(report: ModuleType) -> None:
     parts = measurements(made_up(report))
-    report.MEASURED.write_text(json.dumps(parts))
-    slower = parts["against"]["figures"]["grasp_lump_icf"] | {"here_case_seconds": 3.0}
-    report.keep("against:grasp_lump_icf", {**parts["against"], "commit": "decade5", "figures": {"grasp_lump_icf": slower}})
-    text = report.table(report.kept_parts())
+    slower = {"grasp_lump_icf": parts["against"]["figures"]["grasp_lump_icf"] | {"here_case_seconds": 3.0}}
+    newer = {**parts["against"], "commit": "decade5", "figures": slower}
+    text = report.table(parts | {"against": report.with_jobs(parts["against"], newer)})
     assert row(text, "`grasp_lump_icf.yaml`, to")[2].startswith("3.00 s")
     assert row(text, "`grasp_lump_icf.yaml`, to")[-1] == "decade5"
     assert row(text, "`annulus_icf.yaml`")[-1] == "c0ffee1"
-    assert text.strip() in report.README.read_text()
 
 
 def test_figures_stand_in_one_row_each_with_what_is_asked(report: ModuleType) -> None:

@@ -86,6 +86,21 @@ def test_a_step_that_is_too_short_is_lengthened_beyond_stops_that_no_step_can_en
     assert marcher.rejected >= 3
 
 
+def test_steps_towards_a_load_that_is_hidden_are_shortened():
+    """As where a force goes to zero: what can be seen of the way is accepted."""
+
+    def advance(now, time, guess):
+        if time > 0.9:
+            raise TooShort("hidden")
+        return Clock(time, time - now.time)
+
+    marcher = TimeMarcher(advance, lambda state: state.step**3, TimeControl(1e-3, first=1e-3, smallest=1e-6))
+    accepted = [0.0]
+    with pytest.raises(ConvergenceError, match=r"gave up at 0\.\d+ s: hidden"):
+        accepted.extend(state.time for state, _ in marcher.march(Clock(0.0), [0.5, 1.0], largest=1.0))
+    assert accepted[-1] == pytest.approx(0.9, abs=1e-3)
+
+
 @pytest.mark.parametrize(("stops", "largest"), [([1.0], 1.0), ([0.5, 1.0], 1e-3)])
 def test_a_load_that_the_longest_step_hides_gives_up(stops, largest):
     with pytest.raises(ConvergenceError, match="gave up at 0 s: hidden"):
