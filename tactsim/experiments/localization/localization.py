@@ -6,7 +6,7 @@ from dataclasses import replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.errors import InputError
@@ -75,6 +75,15 @@ class Localization(Experiment):
     """How the inclusion is sought."""
 
     history_units: ClassVar[dict[str, str]] = {"total_upper": "N", "total_lower": "N"}
+
+    @model_validator(mode="after")
+    def _has_what_the_estimator_needs(self) -> Self:
+        if self.reference is None and self.estimator.needs_reference:
+            raise ValueError(
+                f"reference is missing: the estimator {self.estimator.kind} needs readings of the tissue without a lump; name "
+                "the result of such a grasp, or take estimator: {kind: thesis, background: none}"
+            )
+        return self
 
     @classmethod
     def example(cls) -> Self:
