@@ -17,6 +17,8 @@ from tactsim.results import Result
 
 COMPUTED_COLOUR, CLOSED_COLOUR = "#1f4e79", "#b8540a"
 HISTORIES = (("reaction_force", "force", "N"), ("displacement", "displacement", "m"))
+ROOM = 0.06
+"""Part of an axis above its largest value, so that a force that is constant is not drawn on its end."""
 DECADES = 1e3
 """Time is drawn on a logarithmic scale when half of the steps end before this part of the whole."""
 
@@ -66,7 +68,8 @@ def _draw_history(axis: Axes, result: Result, name: str, words: str, unit: str) 
     if axis.get_xscale() == "log" and positive.size and values.min() >= 0 and positive.max() > DECADES * positive.min():
         axis.set_yscale("log")
     else:
-        axis.set_ylim(bottom=min(0.0, float(factor * values.min())))
+        bottom, top = min(0.0, float(factor * values.min())), axis.get_ylim()[1]
+        axis.set_ylim(bottom, top + ROOM * (top - bottom))
     despined(axis)
 
 
