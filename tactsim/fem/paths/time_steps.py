@@ -102,10 +102,11 @@ class TimeMarcher(Generic[State]):
                 except ConvergenceError as failure:
                     self.rejected += 1
                     if isinstance(failure, TooShort) and now is start:
-                        if step >= largest or stop == stops[-1] <= now.time + step:
+                        at_stop = step >= stop - now.time  # now.time + step may be less than stop by round-off
+                        if step >= largest or (at_stop and stop == stops[-1]):
                             raise ConvergenceError(f"gave up at {now.time:.6g} s: {failure}", failure.history) from failure
                         wanted = LENGTHENED * step
-                        if stop <= now.time + step:
+                        if at_stop:
                             break  # no step can end at this stop
                         continue
                     error = error if isinstance(failure, _TooLong) else 4 * self._control.tolerance

@@ -66,7 +66,7 @@ def test_a_step_that_never_converges_gives_up_with_its_time():
     assert marcher.rejected > 5
 
 
-def hidden(until, *, first=1e-9):
+def hidden(until, *, error=lambda state: state.step**3):
     """Steps whose load cannot be seen before a time."""
 
     def advance(now, time, guess):
@@ -74,7 +74,7 @@ def hidden(until, *, first=1e-9):
             raise TooShort("hidden")
         return Clock(time, time - now.time)
 
-    return TimeMarcher(advance, lambda state: state.step**3, TimeControl(1e-3, first=first, smallest=1e-12))
+    return TimeMarcher(advance, error, TimeControl(1e-3, first=1e-9, smallest=1e-12))
 
 
 def test_a_step_that_is_too_short_is_lengthened_beyond_stops_that_no_step_can_end_at():
@@ -84,6 +84,13 @@ def test_a_step_that_is_too_short_is_lengthened_beyond_stops_that_no_step_can_en
     assert 1e-2 in times
     assert times[-1] == 1.0
     assert marcher.rejected >= 3
+
+
+def test_a_stop_that_round_off_does_not_reach_ends_no_search():
+    """The search for a step that is long enough would go on for ever there."""
+    start, stop = 0.1, next(s for s in np.linspace(0.3, 1.0, 99) if 0.1 + (s - 0.1) < s)
+    times = [state.time for state, _ in hidden(1.5, error=lambda state: 0.0).march(Clock(start), [stop, 3.0], largest=5.0)]
+    assert times[-1] == 3.0
 
 
 def test_steps_towards_a_load_that_is_hidden_are_shortened():
