@@ -122,8 +122,7 @@ class Durometer(Experiment):
         from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 
         def surplus(state: ContactEquilibrium) -> float:
-            traction = state.contacts[0].at(path.model.displacement(state.unknowns)).traction
-            return float(path.model.force(traction)[-1]) - float(self.scale.spring_force(state.load))
+            return float(path.model.force(state.contacts[0].state.traction)[-1]) - float(self.scale.spring_force(state.load))
 
         event = Event[ContactEquilibrium](surplus, tolerance=EVENT_TOLERANCE * self.scale.travel)
         for state, balanced in path.follow(path.start, event, adapted):

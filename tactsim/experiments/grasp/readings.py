@@ -69,5 +69,5 @@ def check_sums(reading: JawReading, rotation: Array, side: str, least: float) ->
 def deepest_penetration(model: GraspModel, state: ContactEquilibrium) -> float:
     """Largest penetration in m at a surface point of either jaw."""
     displacement = model.space.split(state.unknowns)[0]
-    gaps = [c.at(c.surface.points.interpolate(displacement)).gap.min() for c in state.contacts]
+    gaps = [c.gap(c.surface.points.interpolate(displacement)).min() for c in state.contacts]
     return max(0.0, -float(min(gaps)))

@@ -74,9 +74,9 @@ class Confusion(Experiment):
         stored = [stored_grasp(folder) for folder in self.grasps]
         doubts = [*unfinished_notes(plain, self.reference), *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
         for folder, grasp in zip(self.grasps, stored, strict=True):
-            doubts += [note for note in unfinished_notes(grasp, folder) if note not in doubts]
+            doubts += unfinished_notes(grasp, folder)
         readings = self._readings(plain, stored)
-        return Course(self._estimated(readings, counted), lambda: self._findings(counted, tuple(doubts)))
+        return Course(self._estimated(readings, counted), lambda: self._findings(counted, tuple(dict.fromkeys(doubts))))
 
     def _estimated(self, readings: Sequence[tuple[str, str, Readings]], counted: _Counted) -> Iterator[StepRecord]:
         for number, (name, true, one) in enumerate(readings):

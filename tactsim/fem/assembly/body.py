@@ -97,7 +97,7 @@ class Body:
         if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
             raise InputError(f"regions must give one of {len(materials)} materials for each of {len(space.elements)} elements")
         self.space = space
-        self.pattern = Pattern(space.elements, space.dim, space.pressures)
+        self.pattern = Pattern(space)
         self.materials = tuple(materials)
         self.regions = np.asarray(regions)
         self.numbers = np.arange(len(self.regions))

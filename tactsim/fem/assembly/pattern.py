@@ -9,6 +9,7 @@ import numpy as np
 from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.threads import are_serial
 
 
@@ -25,21 +26,19 @@ class Pattern:
 
     Parameters
     ----------
-    elements : (E, A) quadratic nodes
-    dim : displacement components of a node
-    pressures : (E, V)
+    space : numbers the unknowns of the elements
     """
 
-    def __init__(self, elements: Array, dim: int, pressures: Array):
-        self._elements, self._dim, self._pressures = elements, dim, pressures
-        self._node_count = int(elements.max()) + 1
-        self.size = self._node_count * dim + int(pressures.max()) + 1
+    def __init__(self, space: TaylorHood):
+        self._space = space
+        self.size = space.size
         """Number of unknowns."""
 
     @cached_property
     def offsets(self) -> Array:
         """Places (E, A + V, A + V) of the first component of each node of an element in the rows of each other."""
-        leading = np.hstack([self._elements * self._dim, self._node_count * self._dim + self._pressures])
+        space = self._space
+        leading = np.hstack([space.elements * space.dim, space.displacement_size + space.pressures])
         offsets = np.empty((len(leading), leading.shape[1], leading.shape[1]), np.int32)
         _locate(leading, self.indptr, self.indices, offsets)
         return offsets
@@ -81,13 +80,11 @@ class Pattern:
 
     @cached_property
     def _structure(self) -> tuple[Array, Array]:
-        elements, dim = self._elements, self._dim
-        unknowns = (elements[:, :, None] * dim + np.arange(dim)).reshape(len(elements), -1)
-        return _csr_structure(np.hstack([unknowns, self._node_count * dim + self._pressures]), self.size)
+        return _csr_structure(self._space.element_unknowns(), self.size)
 
     @cached_property
     def _coloured(self) -> tuple[Array, Array]:
-        return _order(self._elements, self._node_count)
+        return _order(self._space.elements, len(self._space.nodes))
 
 
 def _csr_structure(element_unknowns: Array, size: int) -> tuple[Array, Array]:
