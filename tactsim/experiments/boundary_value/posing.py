@@ -106,9 +106,8 @@ class _Posing:
 
     def _load(self, condition: Load) -> tuple[FactoredForce, float]:
         """A load, and its size at the factor one."""
-        entries = len(self._body.pattern.indices)
         if isinstance(condition, BodyForceCondition):
-            return DeadLoad(weight_of(self._body, np.array(condition.vector(self._parts.axes))), entries), 1.0
+            return DeadLoad(weight_of(self._body, np.array(condition.vector(self._parts.axes)))), 1.0
         facets = self._parts.facets(condition)
         if isinstance(condition, PressureCondition) and condition.follows:
             return FollowerPressure(self._body.space, facets, self._body.pattern, condition.pressure), condition.pressure
@@ -118,7 +117,7 @@ class _Posing:
         else:
             area = float(points.weights.sum()) if isinstance(condition, ForceCondition) else 1.0
             traction = np.zeros_like(points.normals) + np.array(condition.vector(self._parts.axes))[:, None] / area
-        return DeadLoad(self._surface(points).force(traction), entries), 1.0
+        return DeadLoad(self._surface(points).force(traction)), 1.0
 
     def _contact(self, condition: ContactCondition) -> MovedContact:
         """A rigid body at first touch."""

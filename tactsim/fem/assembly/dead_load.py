@@ -6,6 +6,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.body_part import BodyPart
 
 
 def weight_of(body: Body, per_volume: Array) -> Array:
@@ -17,30 +18,33 @@ def weight_of(body: Body, per_volume: Array) -> Array:
 
 
 class DeadLoad:
-    """Nodal ``forces`` (size,) in N that no displacement changes; ``entries`` is the number of those of the tangent.
+    """Nodal ``forces`` (size,) in N that no displacement changes.
 
     Those of a traction on a surface come from `SurfaceAssembly.force`, those of a weight from `weight_of`. On an
     axisymmetric body the radial components push outwards all around.
     """
 
-    def __init__(self, forces: Array, entries: int):
-        self._forces, self._entries = forces, entries
+    def __init__(self, forces: Array):
+        self._forces = forces
 
     def at(self, factor: float) -> FactoredLoad:
         """The same load times a factor."""
-        return FactoredLoad(factor * self._forces, self._entries)
+        return FactoredLoad(factor * self._forces)
 
 
 class FactoredLoad:
     """Nodal forces (size,) in N that no displacement changes."""
 
-    def __init__(self, force: Array, entries: int):
-        self._force, self._entries = force, entries
+    def __init__(self, force: Array):
+        self._force = force
 
     def force(self, displacement: Array) -> Array:
         """External nodal forces (size,) in N at any displacements."""
         return self._force
 
-    def stiffness(self, displacement: Array) -> Array:
-        """Tangent entries: none."""
-        return np.zeros(self._entries)
+    def add_stiffness(self, data: Array, displacement: Array) -> None:
+        """Nothing, as the force does not change."""
+
+    def of_part(self, part: BodyPart) -> FactoredLoad:
+        """The share of the forces that a part of the body bears."""
+        return FactoredLoad(part.share(self._force))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any, Protocol, TypeVar
 
 from tactsim.array import Array
+from tactsim.fem.assembly.body_part import BodyPart
 from tactsim.fem.assembly.surface import SurfaceAssembly
 
 
@@ -79,5 +80,8 @@ class FollowerLoad(Protocol):
     def force(self, displacement: Array) -> Array:
         """External nodal forces (size,) in N at nodal displacements (n, d)."""
 
-    def stiffness(self, displacement: Array) -> Array:
-        """Tangent entries, minus the derivative of the force."""
+    def add_stiffness(self, data: Array, displacement: Array) -> None:
+        """Add minus the derivative of the force to the entries ``data`` of the body's tangent."""
+
+    def of_part(self, part: BodyPart) -> FollowerLoad:
+        """The same load on a part of the body, as the share that the part bears of it."""

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from copy import copy
+from functools import cached_property
 
 import numpy as np
 from skfem.quadrature import get_quadrature
 
 from tactsim.array import Array
+from tactsim.fem.assembly.body_part import BodyPart
 from tactsim.fem.assembly.pattern import Pattern
 from tactsim.fem.assembly.space import FACET_ELEMENTS, SURFACE_ORDER, TaylorHood, tabulate
 
@@ -28,36 +30,69 @@ class FollowerPressure:
     """
 
     def __init__(self, space: TaylorHood, facets: Array, pattern: Pattern, pressure: float):
-        element = FACET_ELEMENTS[space.dim]
-        X, W = get_quadrature(element, SURFACE_ORDER[space.dim])
-        self._values, self._local = tabulate(element, X)
-        self._weights, self._space, self._facets, self.pressure = W, space, facets, pressure
-        self._unknowns = (facets[:, :, None] * space.dim + np.arange(space.dim)).reshape(len(facets), -1)
-        rows = np.repeat(self._unknowns[:, :, None], self._unknowns.shape[1], axis=2)
-        self._positions = pattern.positions(rows, rows.transpose(0, 2, 1))
-        self._entries, self._size = len(pattern.indices), pattern.size
+        self._facets, self.pressure = _PressedFacets(space, facets, pattern), pressure
 
     def at(self, pressure: float) -> FollowerPressure:
         """The same facets under another pressure in Pa."""
-        other = copy(self)
-        other.pressure = pressure
-        return other
+        return self._on(self._facets, pressure)
+
+    def of_part(self, part: BodyPart) -> FollowerPressure:
+        """The pressure on the facets of a part of the body."""
+        return self._on(self._facets.of_part(part), self.pressure)
 
     def force(self, displacement: Array) -> Array:
         """External nodal forces (size,) in N at nodal displacements (n, d) in m."""
+        return self.pressure * self._facets.force(displacement)
+
+    def add_stiffness(self, data: Array, displacement: Array) -> None:
+        """Add the pressure times the derivative of the area vector to the entries of the tangent."""
+        self._facets.add_stiffness(data, displacement, self.pressure)
+
+    def _on(self, facets: _PressedFacets, pressure: float) -> FollowerPressure:
+        other = copy(self)
+        other._facets, other.pressure = facets, pressure
+        return other
+
+
+class _PressedFacets:
+    """Facets under a pressure of 1 Pa, and the places of their tangent entries."""
+
+    def __init__(self, space: TaylorHood, facets: Array, pattern: Pattern):
+        element = FACET_ELEMENTS[space.dim]
+        X, W = get_quadrature(element, SURFACE_ORDER[space.dim])
+        self._values, self._local = tabulate(element, X)
+        self._weights, self._space, self._facets, self._pattern = W, space, facets, pattern
+        self._unknowns = (facets[:, :, None] * space.dim + np.arange(space.dim)).reshape(len(facets), -1)
+        self._parts: dict[BodyPart, _PressedFacets] = {}
+
+    def of_part(self, part: BodyPart) -> _PressedFacets:
+        """Those that lie on a part of the body, the same object for the same part."""
+        if part not in self._parts:
+            self._parts[part] = _PressedFacets(part.body.space, part.facets(self._facets)[1], part.body.pattern)
+        return self._parts[part]
+
+    def force(self, displacement: Array) -> Array:
+        """Nodal forces (size,) in N/Pa."""
         x = (self._space.nodes + displacement)[self._facets]
         area = self._measure(x)[..., None] * self._area_normal(x)
-        forces = -self.pressure * np.einsum("q,qa,fqi->fai", self._weights, self._values, area)
-        return np.bincount(self._unknowns.ravel(), forces.ravel(), self._size)
+        forces = np.einsum("q,qa,fqi->fai", self._weights, self._values, area)
+        return -np.bincount(self._unknowns.ravel(), forces.ravel(), self._space.size)
 
-    def stiffness(self, displacement: Array) -> Array:
-        """Tangent entries: the pressure times the derivative of the area vector."""
+    def add_stiffness(self, data: Array, displacement: Array, pressure: float) -> None:
+        """Add minus the derivative of the force at a pressure in Pa to the entries of the tangent."""
         x = (self._space.nodes + displacement)[self._facets]
         slope = self._measure(x)[..., None, None, None] * self._area_normal_slope(x)
         if self._space.measure == "axisymmetric":
             slope[..., 0] += 2 * np.pi * self._area_normal(x)[..., :, None] * self._values[None, :, None, :]
-        blocks = self.pressure * np.einsum("q,qa,fqibk->faibk", self._weights, self._values, slope)
-        return np.bincount(self._positions.ravel(), blocks.ravel(), self._entries)
+        blocks = pressure * np.einsum("q,qa,fqibk->faibk", self._weights, self._values, slope)
+        places, positions = self._places
+        data[places] += np.bincount(positions, blocks.ravel(), len(places))
+
+    @cached_property
+    def _places(self) -> tuple[Array, Array]:
+        """Places of the facets' entries in the tangent, each once, and which of them each facet's entries take."""
+        rows = np.repeat(self._unknowns[:, :, None], self._unknowns.shape[1], axis=2)
+        return np.unique(self._pattern.positions(rows, rows.transpose(0, 2, 1)).ravel(), return_inverse=True)
 
     def _measure(self, x: Array) -> Array:
         """Circumference at the points of an axisymmetric facet (F, Q) in m, one otherwise."""

@@ -9,6 +9,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.body_part import BodyPart
 
 WEAKNESS = 1e-8
 """Stiffness of all springs together over that of the body."""
@@ -29,14 +30,11 @@ class AnchoredSprings:
         self._body, self._rest = body, rest
         self._stiffness = np.zeros(space.size)
         self._stiffness[: space.displacement_size] = np.repeat(strength * softest * size * volume / volume.sum(), space.dim)
-        self._tangent: Array | None = None
 
-    def of_part(self, body: Body, unknowns: Array, sides: Array) -> AnchoredSprings:
-        """The springs of a part ``body``, whose ``unknowns`` (size',) have these numbers in the whole and are shared with so many
-        ``sides`` (size',), its own among them."""
+    def of_part(self, part: BodyPart) -> AnchoredSprings:
+        """The springs of a part of the body; of one on a plane between parts, its share."""
         springs = copy(self)
-        springs._body, springs._rest, springs._tangent = body, self._rest[unknowns], None
-        springs._stiffness = self._stiffness[unknowns] / sides
+        springs._body, springs._rest, springs._stiffness = part.body, self._rest[part.unknowns], part.share(self._stiffness)
         return springs
 
     def force(self, displacement: Array) -> Array:
@@ -45,13 +43,9 @@ class AnchoredSprings:
         force[: displacement.size] *= displacement.ravel() - self._rest[: displacement.size]
         return force
 
-    def stiffness(self, displacement: Array) -> Array:
-        """Tangent entries, the same array at all displacements."""
-        if self._tangent is None:
-            pattern = self._body.pattern
-            self._tangent = np.zeros(len(pattern.indices))
-            self._tangent[pattern.diagonal] = self._stiffness
-        return self._tangent
+    def add_stiffness(self, data: Array, displacement: Array) -> None:
+        """Add the stiffness of the springs to the diagonal of the tangent."""
+        data[self._body.pattern.diagonal] += self._stiffness
 
     def total(self, displacement: Array) -> Array:
         """Resultant (d,) in N of the springs on the body."""

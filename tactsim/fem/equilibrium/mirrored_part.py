@@ -11,8 +11,7 @@ from scipy.spatial import cKDTree
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body, RelaxationStep
-from tactsim.fem.assembly.external_forces import FollowerLoad
-from tactsim.fem.assembly.regularising_springs import AnchoredSprings
+from tactsim.fem.assembly.body_part import BodyPart
 from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.balance import ExternalForces
@@ -86,10 +85,6 @@ class MirroredPart:
         """The unknowns of the part (size',) in those of the whole (size,), or nodal values alike."""
         return unknowns[self._unknowns]
 
-    def shared(self, forces: Array) -> Array:
-        """What acts on the part (size',) of nodal forces on the whole (size,): at nodes on a plane each side bears half."""
-        return forces[self._unknowns] / self._sides.prod(axis=1)
-
     def mirrors(self, forces: Array) -> bool:
         """Whether nodal forces on the whole (size,) are their own mirror image."""
         return bool(np.abs(self.unfolded(self.folded(forces)) - forces).max() <= SAME_FORCE * np.abs(forces).max())
@@ -103,8 +98,8 @@ class MirroredPart:
             control = PrescribedForce(tuple(control.directions[number] for number in touched), control.force / self.copies)
         return ExternalForces(
             tuple(forces.interfaces[number].of_part(surface.assembly, surface.points) for number, surface in touched.items()),
-            tuple(self._load(load) for load in forces.loads),
-            None if forces.nodal_force is None else self.shared(forces.nodal_force),
+            tuple(load.of_part(self.own) for load in forces.loads),
+            None if forces.nodal_force is None else self.own.share(forces.nodal_force),
             control,
         )
 
@@ -115,30 +110,21 @@ class MirroredPart:
         stress = np.take(step.stress, self.elements, axis=1)  # an index would give an order that the loops are compiled for anew
         return RelaxationStep(step.scale[self.elements], stress)
 
-    def _load(self, load: FollowerLoad) -> FollowerLoad:
-        """What acts on the part of a load on the whole; of springs without the tangent entries of the whole."""
-        if isinstance(load, AnchoredSprings):
-            return load.of_part(self.body, self._unknowns, self._sides.prod(axis=1))
-        return _LoadOnPart(load, self)
-
     def _surface(self, surface: SurfaceAssembly) -> SurfacePart | None:
         """What lies on the part of a surface of the whole, the same object for the same surface; None if nothing does."""
         if surface not in self._surfaces:
             points, dim = surface.points, self.body.space.dim
-            facets = points.nodes[:: points.per_facet]
-            chosen = np.flatnonzero(
-                inside(self.whole.space.nodes[facets[:, :dim]].mean(axis=1), self.whole.space.nodes, self.axes)
-            )
+            chosen, facets = self.own.facets(points.nodes[:: points.per_facet])
             numbers = (points.per_facet * chosen[:, None] + np.arange(points.per_facet)).ravel()
-            on_part = self.body.space.surface_points(np.searchsorted(self.nodes, facets[chosen]))
+            on_part = self.body.space.surface_points(facets)
             assembly = SurfaceAssembly(on_part, self.body.pattern, dim) if len(chosen) else None
             self._surfaces[surface] = None if assembly is None else SurfacePart(assembly, numbers)
         return self._surfaces[surface]
 
-    def tangent(self, data: Array) -> Array:
-        """The share of the part's tangent entries in ``data``, which a load or a contact adds to the entries of the whole."""
-        places, sides = self._entries
-        return data[places] / sides
+    @cached_property
+    def own(self) -> BodyPart:
+        """Its unknowns and facets in the whole: at nodes on a plane each side bears half."""
+        return BodyPart(self.body, self.nodes, self._unknowns, self._sides.prod(axis=1))
 
     @cached_property
     def _surfaces(self) -> dict[SurfaceAssembly, SurfacePart | None]:
@@ -163,32 +149,6 @@ class MirroredPart:
             beyond[space.element_unknowns()[there]] = True
             shares.append(1 + beyond[self._unknowns])
         return np.stack(shares, axis=1)
-
-    @cached_property
-    def _entries(self) -> tuple[Array, Array]:
-        """Places in the whole's tangent of the entries of the part's, and on how many sides of planes what makes them lies."""
-        pattern = self.body.pattern
-        rows, columns = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr)), pattern.indices
-        places = self.whole.pattern.positions(self._unknowns[rows], self._unknowns[columns])
-        return places, np.minimum(self._sides[rows], self._sides[columns]).prod(axis=1)
-
-
-class _LoadOnPart:
-    """A load on the whole as it acts on a part."""
-
-    def __init__(self, load: FollowerLoad, part: MirroredPart):
-        self._load, self._part = load, part
-
-    def force(self, displacement: Array) -> Array:
-        """External nodal forces (size',) in N at nodal displacements (n', d)."""
-        return self._part.shared(self._load.force(self._unfolded(displacement)))
-
-    def stiffness(self, displacement: Array) -> Array:
-        """Tangent entries, minus the derivative of the force."""
-        return self._part.tangent(self._load.stiffness(self._unfolded(displacement)))
-
-    def _unfolded(self, displacement: Array) -> Array:
-        return self._part.signs * displacement[self._part.images]
 
 
 def mirrored_part(body: Body, axes: Sequence[int] = (0, 1, 2)) -> MirroredPart | None:

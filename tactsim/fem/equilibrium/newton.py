@@ -243,7 +243,7 @@ class _Solution:
             interface.surface.add_stiffness(data, force.derivative)
         u, _ = body.space.split(state.unknowns)
         for load in self._forces.loads:
-            data += load.stiffness(u)
+            load.add_stiffness(data, u)
         matrix = body.pattern.matrix(constraints.apply(data))
 
         def nearby() -> csr_matrix:

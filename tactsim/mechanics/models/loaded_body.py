@@ -190,7 +190,7 @@ class LoadedBody:
         data = body.tangent(state.unknowns, state.kinematics)
         u, _ = self.space.split(state.unknowns)
         for load in loads:
-            data += load.stiffness(u)
+            load.add_stiffness(data, u)
         return data
 
     def _lifted(

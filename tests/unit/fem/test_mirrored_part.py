@@ -14,6 +14,7 @@ from numpy.testing import assert_allclose
 from solids import facets_where, on_plane
 
 from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.fem.assembly.dead_load import DeadLoad
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.assembly.regularising_springs import AnchoredSprings, RegularisingSprings
 from tactsim.fem.assembly.space import TaylorHood
@@ -54,6 +55,13 @@ def body_of(mesh, regions, *materials):
     return Body(TaylorHood(mesh.nodes, mesh.elements, "solid", regions), materials, regions, volume_stiffness=3.0)
 
 
+def stiffness(load, body, displacement):
+    """What a load adds to the tangent."""
+    data = np.zeros(len(body.pattern.indices))
+    load.add_stiffness(data, displacement)
+    return body.pattern.matrix(data)
+
+
 def mirrored_state(body):
     """Unknowns that are their own images in the middle planes across all axes: odd across, even along each."""
     space = body.space
@@ -87,13 +95,12 @@ def test_the_part_computes_what_the_whole_does(make, copies):
     assert (part.folded(state)[part.held] == 0).all()
     forces = whole.residual(state)
     assert_allclose(
-        part.body.residual(part.folded(state))[free], part.shared(forces)[free], rtol=0, atol=1e-11 * np.abs(forces).max()
+        part.body.residual(part.folded(state))[free], part.own.share(forces)[free], rtol=0, atol=1e-11 * np.abs(forces).max()
     )
-    tangent, own = part.tangent(whole.tangent(state)), part.body.tangent(part.folded(state))
-    pattern = part.body.pattern
-    rows = np.repeat(np.arange(pattern.size), np.diff(pattern.indptr))
-    between = free[rows] & free[pattern.indices]
-    assert_allclose(own[between], tangent[between], rtol=0, atol=1e-11 * np.abs(tangent).max())
+    tangent, own = whole.tangent(state), part.body.tangent(part.folded(state))
+    for direction in np.random.default_rng(3).standard_normal((5, part.body.space.size)) * free:
+        given = part.own.share(whole.pattern.matrix(tangent) @ part.unfolded(direction))[free]
+        assert_allclose((part.body.pattern.matrix(own) @ direction)[free], given, rtol=0, atol=1e-11 * np.abs(given).max())
 
 
 def test_loads_on_the_whole_act_on_the_part():
@@ -102,11 +109,18 @@ def test_loads_on_the_whole_act_on_the_part():
     springs = AnchoredSprings(whole, 0.1, np.zeros(whole.space.size))
     (load,) = part.forces(ExternalForces(loads=(springs,))).loads
     displacement = u[part.nodes]
-    assert_allclose(load.force(displacement), part.shared(springs.force(u)), rtol=1e-12)
-    moved = part.body.pattern.matrix(load.stiffness(displacement)) @ np.ones(part.body.space.size)
-    given = part.shared(whole.pattern.matrix(springs.stiffness(u)) @ np.ones(whole.space.size))
-    assert_allclose(moved, given, rtol=1e-12)
-    assert load.stiffness(displacement) is load.stiffness(displacement), "entries of springs are made once"
+    assert_allclose(load.force(displacement), part.own.share(springs.force(u)), rtol=1e-12)
+    moved = stiffness(load, part.body, displacement) @ np.ones(part.body.space.size)
+    assert_allclose(moved, part.own.share(stiffness(springs, whole, u) @ np.ones(whole.space.size)), rtol=1e-12)
+
+
+def test_a_dead_load_on_the_whole_acts_on_the_part():
+    whole = lumped()
+    part, u = mirrored_part(whole), whole.space.split(mirrored_state(whole))[0]
+    weight = DeadLoad(np.where(np.arange(whole.space.size) < whole.space.displacement_size, mirrored_state(whole), 0.0)).at(2.0)
+    (load,) = part.forces(ExternalForces(loads=(weight,))).loads
+    assert_allclose(load.force(u[part.nodes]), part.own.share(weight.force(u)), rtol=1e-12)
+    assert not stiffness(load, part.body, u[part.nodes]).data.any()
 
 
 def test_pressure_on_the_whole_acts_on_the_part():
@@ -117,12 +131,12 @@ def test_pressure_on_the_whole_acts_on_the_part():
     pressure = FollowerPressure(whole.space, ends, whole.pattern, 300.0)
     (load,) = part.forces(ExternalForces(loads=(pressure,))).loads
     displacement, free = u[part.nodes], np.setdiff1d(np.arange(part.body.space.size), part.held)
-    assert_allclose(load.force(displacement), part.shared(pressure.force(u)), rtol=1e-12)
+    assert_allclose(load.force(displacement)[free], part.own.share(pressure.force(u))[free], rtol=0, atol=1e-12)
     moved = mirrored_part(whole).folded(mirrored_state(whole))
     moved[part.body.space.displacement_size :] = 0.0
     unfolded = part.unfolded(moved)
-    given = part.shared(whole.pattern.matrix(pressure.stiffness(u)) @ unfolded)
-    own = part.body.pattern.matrix(load.stiffness(displacement)) @ moved
+    given = part.own.share(stiffness(pressure, whole, u) @ unfolded)
+    own = stiffness(load, part.body, displacement) @ moved
     assert_allclose(own[free], given[free], rtol=0, atol=1e-11 * np.abs(given).max())
 
 
@@ -133,7 +147,9 @@ def test_the_tangent_of_a_whole_that_mirrors_itself_is_never_laid_out():
     problem = MirroredProblem(mirrored_part(whole), options=NewtonOptions())
     rest = 1e-3 * (whole.space.nodes / SIZE - 0.5).ravel()
     anchored = AnchoredSprings(whole, 0.3, np.concatenate([rest, np.zeros(whole.space.size - len(rest))]))
-    problem.solve(np.zeros(whole.space.size), loads=[anchored, RegularisingSprings(whole)])
+    ends = np.concatenate([facets_where(mesh, on_plane(0, place)) for place in (0.0, SIZE[0])])
+    pressure, none = FollowerPressure(whole.space, ends, whole.pattern, 10.0), DeadLoad(np.zeros(whole.space.size)).at(1.0)
+    problem.solve(np.zeros(whole.space.size), loads=[anchored, pressure, none, RegularisingSprings(whole)])
     assert problem.copies == 8
     assert "_structure" not in vars(whole.pattern)
 
