@@ -242,6 +242,9 @@ def measured(entries: Sequence[Any]) -> Numbers:
     if any(texts) != all(texts):
         raise InvalidQuantity(f"{shown(list(entries))} mixes plain numbers and quantities")
     if not any(texts):
+        endless = [entry for entry in entries if not math.isfinite(entry)]
+        if endless:
+            raise InvalidQuantity(f"{shown(endless[0])} is not a finite number")
         return Numbers(tuple(map(float, entries)), "", "", 1.0)
     parts = _parts(entries[0])
     assert parts is not None  # every entry was checked above

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Literal, Self
 
 from tactsim.materials.invariant_polynomial import InvariantPolynomial
-from tactsim.units import Pressure
+from tactsim.units import Positive, Pressure
 
 
 class NeoHookean(InvariantPolynomial):
@@ -19,7 +19,7 @@ class NeoHookean(InvariantPolynomial):
     """
 
     kind: Literal["neo_hookean"] = "neo_hookean"
-    c10: Pressure
+    c10: Positive[Pressure]
     """Coefficient of (I1 - 3)."""
 
     @classmethod

@@ -136,6 +136,11 @@ class Result:
     __hash__ = None  # type: ignore[assignment]
 
     @property
+    def early_end(self) -> str | None:
+        """How the run ended before its end, such as ``"ended as failed (...)"``; None if it came to its end."""
+        return None if self.status is Status.CONVERGED else f"ended as {self.status.value} ({self.reason})"
+
+    @property
     def at_rest(self) -> bool:
         """Whether it shows what a run would begin with and nothing is computed: it has fields, and no step."""
         return bool(self.frames) and not self.steps

@@ -25,8 +25,14 @@ def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
     except StorageError:
         raise
     except (OSError, ValueError, RecursionError) as error:
-        reason = getattr(error, "strerror", None) or one_line(error)
+        reason = _file_above(path) or getattr(error, "strerror", None) or one_line(error)
         raise StorageError(f"cannot {verb} {one_line(path)}: {reason}") from error
+
+
+def _file_above(path: str | Path) -> str | None:
+    """What stands where a folder is needed, in words; None if nothing does."""
+    files = [parent for parent in Path(path).parents if os.path.isfile(parent)]
+    return f"{one_line(files[0])} is a file, not a folder; name another place" if files else None
 
 
 def beside(path: Path, ending: str) -> Path:

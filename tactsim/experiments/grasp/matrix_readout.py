@@ -14,7 +14,7 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.outside.input_path import InputPath
 from tactsim.results.reading import read_basis
-from tactsim.results.result import Result, Status, rows
+from tactsim.results.result import Result, rows
 from tactsim.sensors.matrix_readout import MatrixReadout
 
 
@@ -76,6 +76,5 @@ def _read(stored: Result, folder: str) -> tuple[GraspScene, Array, Array]:
 
 
 def _unfinished(stored: Result) -> tuple[str, ...]:
-    if stored.status is Status.CONVERGED:
-        return ()
-    return (f"the grasp ended as {stored.status.value} ({stored.reason}); what it had accepted is read",)
+    end = stored.early_end
+    return () if end is None else (f"the grasp {end}; what it had accepted is read",)

@@ -20,7 +20,7 @@ from tactsim.interfaces.readings import Readings
 from tactsim.materials.homogeneous import stiffness_ratio
 from tactsim.refusals import first_fault
 from tactsim.results.reading import read_basis, read_result
-from tactsim.results.result import Result, Status
+from tactsim.results.result import Result
 from tactsim.units import format_quantity
 
 SAME_CLOSING = 1e-3
@@ -143,9 +143,8 @@ def reference_notes(inclusions: Sequence[Inclusion]) -> tuple[str, ...]:
 
 def unfinished_notes(grasp: Result, folder: str) -> tuple[str, ...]:
     """What the user must know of a stored grasp that did not come to its end."""
-    if grasp.status is Status.CONVERGED:
-        return ()
-    return (f"the grasp in {folder_words(folder)} ended as {grasp.status.value} ({grasp.reason})",)
+    end = grasp.early_end
+    return () if end is None else (f"the grasp in {folder_words(folder)} {end}",)
 
 
 def away_from_truth(center: Array, places: Array) -> tuple[Array, float, float]:

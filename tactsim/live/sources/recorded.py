@@ -17,7 +17,7 @@ from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recordi
 from tactsim.outside.files import Unreadable
 from tactsim.outside.text import one_line
 from tactsim.results.reading import read_basis
-from tactsim.results.result import Result, Status
+from tactsim.results.result import Result
 from tactsim.results.scene import UnreadableScene
 
 SOURCES: dict[str, str] = {TAXEL_FORCE: "forces of the solution", READ_FORCE: "forces read through the sensors"}
@@ -75,8 +75,8 @@ def _scene(result: Result, grasp: GraspScene, title: str) -> PageScene:
 
 
 def _notes(result: Result) -> tuple[str, ...]:
-    failed = () if result.status is Status.CONVERGED else (f"the run ended as {result.status.value}: {result.reason}",)
-    return failed + result.warnings
+    end = result.early_end
+    return (*(() if end is None else (f"the run {end}",)), *result.warnings)
 
 
 def _recording(result: Result, scene: PageScene, name: str) -> Recording:

@@ -68,6 +68,8 @@ def test_places_within_options_have_values_only_if_chosen() -> None:
     ("written", "words"),
     [
         ({"uniform": [2, 1]}, "must increase"),
+        ({"uniform": [float("nan"), 1]}, "nan is not a finite number"),
+        ({"values": [1, float("inf")]}, "inf is not a finite number"),
         ({"uniform": ["1 mm", 2]}, "mixes plain numbers and quantities"),
         ({"uniform": ["1 mm", "2 kPa"]}, "wrong dimension"),
         ({"uniform": [1]}, "list of 2"),

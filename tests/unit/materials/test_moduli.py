@@ -21,6 +21,11 @@ def test_a_stiffness_that_is_not_positive_is_refused(c10, c01, value):
         MooneyRivlin2(c10=c10, c01=c01)
 
 
+def test_the_one_constant_is_named():
+    with pytest.raises(CaseError, match=r"c10: '-1 kPa' is out of range; must be greater than 0 Pa"):
+        NeoHookean(c10="-1 kPa")
+
+
 def test_a_negative_constant_is_allowed_while_the_stiffness_is_positive():
     assert MooneyRivlin2(c10=-1.0, c01=1.5).shear_modulus == 1.0
 

@@ -28,3 +28,10 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path: Path, monkeypatch: pyt
 def test_a_missing_folder_is_reported(tmp_path: Path) -> None:
     with pytest.raises(StorageError, match="No such file"):
         files.replace_file(tmp_path / "no" / "file", b"")
+
+
+def test_a_file_where_a_folder_is_needed_is_named(tmp_path: Path) -> None:
+    (tmp_path / "file").write_bytes(b"")
+    said = pytest.raises(StorageError, match=r"cannot write .*file/sub/a: .*file is a file, not a folder; name another place")
+    with said, files.naming(tmp_path / "file" / "sub" / "a"):
+        (tmp_path / "file" / "sub").mkdir(parents=True)
