@@ -10,6 +10,9 @@ from contextvars import ContextVar
 
 from tactsim.errors import OutOfTime
 
+TOO_LONG = "took longer than the"
+"""How the reason of a computation begins that its time did not suffice for."""
+
 _LIMIT: ContextVar[tuple[float, float] | None] = ContextVar("limit", default=None)
 """When the computation in this thread must end, on the monotonic clock, and the seconds that it had."""
 
@@ -59,4 +62,4 @@ def check_time() -> None:
         raise OutOfTime("was stopped")
     limit = _LIMIT.get()
     if limit is not None and seconds_left() < 0:
-        raise OutOfTime(f"took longer than the {limit[1]:g} s that it was given")
+        raise OutOfTime(f"{TOO_LONG} {limit[1]:g} s that it was given")

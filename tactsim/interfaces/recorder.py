@@ -41,6 +41,11 @@ class Recorder(Kind):
         """What its result holds beside ``quantities``; sizes as those of this experiment."""
         return []
 
+    def longest_step(self, experiment: Any) -> float:
+        """Longest time in s, as far as it is known before the experiment is run, between computed moments of a history while a
+        prescribed value changes; what is stored in between lies on straight lines."""
+        return 0.0
+
     def labels(self, experiment: Any) -> Values:
         """Values of `labels_of`."""
         return {}

@@ -32,6 +32,8 @@ if TYPE_CHECKING:
 
 SPHERE = 1
 """Number of a ball among the kinds of inclusions of a store."""
+LEAST_NOISE = 1e-9
+"""Of a reading over the largest: below it is round-off."""
 REPEATED = 16
 """Readings of the same forces from which the noise of a sensor is estimated."""
 
@@ -144,6 +146,11 @@ def judged_samples(
     plain.at(np.array([truth.closing for truth in truths]))
     durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
     electronic = _read_noise(plain, experiment, float(durations.max())) if source == READ_FORCE else 0.0
+    if noise is None and source == READ_FORCE and electronic < LEAST_NOISE * float(np.abs(forces).max()):
+        raise InputError(
+            f"{Path(store).name} was read without noise, from which no estimator can tell a lump that is felt; give that of the "
+            "sensors, such as --noise '1 mN' (in Python: noise=1e-3)"
+        )
     given = noise if noise is not None else 0.0 if source == READ_FORCE else ROUNDING_NOISE
     stated = float(np.hypot(electronic, given))
     return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic)

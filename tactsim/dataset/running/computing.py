@@ -18,9 +18,10 @@ from tactsim.dataset.store.blocks import checksum, encoded, stacked
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError
 from tactsim.experiments.recording import numbers as numbers_of
 from tactsim.outside.library_warnings import collected_warnings
+from tactsim.outside.text import one_line
 from tactsim.results.result import Status
 
-LONGEST_REASON = 500
+LONGEST_REASON, LONGEST_WARNINGS = 500, 2000
 
 
 def computed(text: str, samples: Sequence[int], lost: str = "", *, folder: str | None = None) -> bytes:
@@ -82,8 +83,8 @@ def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -
     return sample | {"checksum": checksum(sample, layout.variables)}
 
 
-def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str, Array]]:
-    """Status, reason and readings of one case; whatever goes wrong in it is the reason of this sample alone."""
+def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str, Any]]:
+    """Status, reason, and readings and warnings of one case; whatever goes wrong in it is the reason of this sample alone."""
     assert drawn.case is not None
     try:
         result = drawn.case.experiment.run(None, time_limit=sweep.settings.time_limit)
@@ -96,7 +97,8 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
         raise  # what the sweep stores is wrong for every sample
     except (TactsimError, ValueError, ArithmeticError, LookupError, MemoryError, RuntimeError) as error:
         return FAILED, f"{type(error).__name__}: {error}", {}
-    return DONE, result.reason, values
+    warnings = "\n".join(map(one_line, result.warnings))[:LONGEST_WARNINGS]
+    return DONE, result.reason, {**values, "warnings": warnings}
 
 
 def _check(values: dict[str, Array], layout: Layout) -> None:

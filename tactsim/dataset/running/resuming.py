@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -12,17 +13,18 @@ import numpy as np
 from tactsim.code_identity import code_identity
 from tactsim.dataset.running.run import SweepRun, Tally
 from tactsim.dataset.sampling.layout import Layout, layout_of
-from tactsim.dataset.sampling.stored import attributes_of, check_same
+from tactsim.dataset.sampling.stored import attributes_of, attributes_of_sweep, check_same, stored_sweep
 from tactsim.dataset.sampling.sweep import Sweep
-from tactsim.dataset.store.arrays import META, earlier_words, wrong_arrays
+from tactsim.dataset.store.arrays import FAILED, META, earlier_words, wrong_arrays
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.files import refuse_links, remove_torn
 from tactsim.dataset.store.opening import Store, consolidated_metadata
 from tactsim.dataset.store.verifying import damaged_samples, mark_pending
 from tactsim.dataset.store.writing import consolidate, create, resize, restore, set_attributes
-from tactsim.errors import StorageError
+from tactsim.deadline import TOO_LONG
+from tactsim.errors import CaseError, StorageError
 from tactsim.outside.text import one_line
-from tactsim.storage.building import refuse_taken, remove_leftover
+from tactsim.storage.building import refuse_taken, remove, remove_leftover
 from tactsim.storage.files import naming
 from tactsim.storage.locking import only_one
 
@@ -48,14 +50,21 @@ def opened_run(sweep: Sweep, path: str | Path, *, resume: bool = False, accept_c
     with only_one(place, f"the data set {one_line(place)} is in use by another sweep; wait for it or choose another folder"):
         with naming(place):
             remove_leftover(place)
-        if os.path.lexists(place / META):
+        new = not os.path.lexists(place / META)
+        if not new:
             run = _continued(sweep, layout, place, resume, accept_changes)
         elif resume:
             raise StorageError(f"there is no data set {one_line(place)} to resume; leave out --resume (in Python: resume=True)")
         else:
             run = _run(sweep, layout, _created(sweep, layout, place))
         run.tally.before = run.store.samples - len(run.store.pending())
-        yield run
+        try:
+            yield run
+        except CaseError:  # what the sweep stores is wrong for every sample
+            if new and len(run.store.pending()) == run.store.samples:
+                with naming(place, "remove"):
+                    remove(place)
+            raise
 
 
 def _run(sweep: Sweep, layout: Layout, store: Store) -> SweepRun:
@@ -79,6 +88,7 @@ def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_c
         how = "go on with it by --resume (in Python: resume=True), or choose another folder"
         raise StorageError(f"the data set {one_line(place)} exists; {how}")
     check_same(sweep, store.attributes, place)
+    earlier = stored_sweep(store).settings.time_limit
     _check_code(store, accept_changes)
     refuse_links(place)
     Journal(place / JOURNAL).refuse_foreign()
@@ -86,6 +96,8 @@ def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_c
     run = _run(sweep, layout, store)
     run.recover()
     _mark_damaged(run)
+    if earlier is not None and (sweep.settings.time_limit or math.inf) > earlier:
+        _mark_too_slow(run)
     if code_identity() != store.attributes["codes"][-1]:
         set_attributes(store, codes=[*store.attributes["codes"], code_identity()])
         run.code += 1
@@ -117,7 +129,7 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
         store = Store.open(store.path, writing=True)
         resize(store, sweep.samples, layout.variables)
     if store.attributes["sweep"] != sweep.text:
-        set_attributes(store, sweep=sweep.text)
+        set_attributes(store, **attributes_of_sweep(sweep))
     elif restored or lengths != {sweep.samples} or not _is_gathered(store):
         consolidate(store.path)
     return Store.open(store.path, writing=True)
@@ -137,6 +149,14 @@ def _refuse_other_arrays(store: Store, layout: Layout) -> None:
 def _is_gathered(store: Store) -> bool:
     gathered = consolidated_metadata(store.path)
     return all(gathered.get(name) == array.metadata for name, array in store.described.items())
+
+
+def _mark_too_slow(run: SweepRun) -> None:
+    """Marks the samples pending for which the time of an earlier run did not suffice."""
+    failed = np.flatnonzero(run.store.read("status") == FAILED)
+    slow = [sample for sample, reason in zip(failed, run.store.read("reason", failed), strict=True) if TOO_LONG in str(reason)]
+    mark_pending(run.store, np.array(slow, int))
+    run.tally.retried = len(slow)
 
 
 def _mark_damaged(run: SweepRun) -> None:

@@ -31,6 +31,8 @@ LOSSES_IN_A_ROW = 30
 """Lost tasks without any that came back after which the workers themselves must be at fault."""
 SLOWEST, WORTH_A_LINE = 3, 1.0
 """How many of the slowest samples are named, and the time in s that one of them must have taken."""
+MOST_KINDS = 20
+"""Reasons of failures, and warnings, that are listed at the end."""
 MOST_LOSSES = 3
 """Lost workers after which a sample is marked failed."""
 
@@ -44,11 +46,15 @@ class Tally:
     done: int = 0
     failed: int = 0
     reasons: Counter[str] = field(default_factory=Counter)
+    warned: Counter[str] = field(default_factory=Counter)
+    """Warnings of samples that are done, without their numbers -> of how many."""
     begin: float = field(default_factory=time.monotonic)
     damaged: dict[str, int] = field(default_factory=dict)
     """Why samples of an earlier sweep are computed again -> how many; a sample may have several reasons."""
     again: int = 0
     """How many samples these are in all."""
+    retried: int = 0
+    """How many samples are computed again because the time of an earlier run did not suffice."""
     times: list[Array] = field(default_factory=list)
     """Of the samples of each block (k, 2): their numbers, and wall times in s."""
 
@@ -56,10 +62,12 @@ class Tally:
         """Notes how long new samples took in s."""
         self.times.append(np.column_stack([samples, seconds]))
 
-    def add(self, done: int, reasons: list[str]) -> None:
-        """Counts new samples: those that are done, and the reasons of those that failed."""
-        self.done += done
+    def add(self, warnings: list[str], reasons: list[str]) -> None:
+        """Counts new samples: by the warnings of each that is done, and by the reasons of those that failed."""
+        self.done += len(warnings)
         self.failed += len(reasons)
+        for text in warnings:
+            self.warned.update({kind_of(line) for line in text.splitlines()})
         self.reasons.update(kind_of(reason) for reason in reasons)
 
     @property
@@ -86,10 +94,13 @@ class Tally:
         if (slowest[:, 1] > WORTH_A_LINE).any():
             slow = ", ".join(f"{taken:.3g} s (sample {number:.0f})" for number, taken in slowest)
             lines.append(f"a sample took {np.median(times[:, 1]):.3g} s in the median; the slowest {slow}")
+        if self.retried:
+            lines.append(f"{self.retried} samples for which the time did not suffice before were computed again")
         if self.damaged:
             lines.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
             lines += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
-        return lines + [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(20)]
+        lines += [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(MOST_KINDS)]
+        return lines + [f"  {count} x warning: {one_line(words)}" for words, count in self.warned.most_common(MOST_KINDS)]
 
 
 def _per_time(rate: float) -> str:
@@ -163,7 +174,8 @@ class SweepRun:
         self.blocks.append(block)
         self.tally.timed(block["sample"], block["wall_time"])
         failed = block["status"] == FAILED
-        self.tally.add(int((block["status"] == DONE).sum()), [str(reason) for reason in block["reason"][failed]])
+        warnings = [str(text) for text in block["warnings"][block["status"] == DONE]]
+        self.tally.add(warnings, [str(reason) for reason in block["reason"][failed]])
         waiting = sum(len(block["sample"]) for block in self.blocks)
         if waiting >= FOLD_SAMPLES or time.monotonic() - self.folded > FOLD_SECONDS:
             self.fold()

@@ -20,9 +20,12 @@ from tactsim.interfaces import Recorder
 from tactsim.interfaces.distributions import Listed
 from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable
+from tactsim.units import format_quantity
 
 SPLITTING = 3
 """Stream of random numbers that deals specimens to splits."""
+ROUND_OFF = 1e-9
+"""Relative difference of two times that are equal."""
 TRIED_SPECIMENS, TRIED_OF_GRID = 3, 1000
 """First specimens of which one must be possible; those of a grid are drawn once each."""
 
@@ -53,7 +56,9 @@ def layout_of(sweep: Sweep) -> Layout:
         unknown = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
         raise sweep.error(("experiment", "kind"), unknown)
     recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
-    index, recorded = index_variables(sweep.settings.splits.names), variables_of(recorder, first_case(sweep).experiment)
+    experiment = first_case(sweep).experiment
+    _check_times(sweep, recorder, experiment)
+    index, recorded = index_variables(sweep.settings.splits.names), variables_of(recorder, experiment)
     labels = [variable for variable in recorded if variable.role == "label"]
     readings = [variable for variable in recorded if variable.role == "reading"]
     variables = (*index, *varied_variables(sweep), *labels, *readings)
@@ -63,6 +68,18 @@ def layout_of(sweep: Sweep) -> Layout:
         raise CaseError(f"sweep: {', '.join(repeated)} would be stored twice; change sweep.quantities")
     _check_splits(sweep, labels)
     return Layout(recorder, variables)
+
+
+def _check_times(sweep: Sweep, recorder: Recorder, experiment: Any) -> None:
+    """Refuses stored times that lie closer to each other than the moments that are computed."""
+    step = recorder.longest_step(experiment)
+    if step and step > (between := experiment.duration / sweep.settings.times) * (1 + ROUND_OFF):
+        apart, computed = (format_quantity(seconds, "s") for seconds in (between, step))
+        raise sweep.error(
+            (SECTION, "times"),
+            f"{sweep.settings.times}: stored times are {apart} apart, but forces are computed every {computed}, and would lie on "
+            f"straight lines in between; take fewer times, or more steps, such as experiment.time.steps: {sweep.settings.times}",
+        )
 
 
 def first_case(sweep: Sweep) -> Case:

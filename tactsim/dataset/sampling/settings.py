@@ -13,6 +13,8 @@ from tactsim.units import NonNegative, Positive, Time
 
 SCHEMA = "tactsim/sweep/1"
 NO_SPLIT = "none"
+OF_THE_CARD = ("title", "limits")
+"""Settings of the card alone."""
 DesignName = Literal["sobol", "latin_hypercube", "random", "grid"]
 """How the unit cube of what varies is covered."""
 

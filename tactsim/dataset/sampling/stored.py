@@ -10,7 +10,7 @@ from typing import Any
 
 from tactsim.code_identity import code_identity, installed_versions
 from tactsim.dataset.sampling.layout import Layout, layout_of
-from tactsim.dataset.sampling.sweep import Place, Sweep, sweep_of_text
+from tactsim.dataset.sampling.sweep import Place, Sweep, deciding, sweep_of_text
 from tactsim.dataset.store.arrays import META, parsed_json
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import InputError, StorageError
@@ -27,21 +27,25 @@ UNUSABLE = (InputError, ValueError, LookupError, TypeError, AttributeError, Arit
 def attributes_of(sweep: Sweep, layout: Layout) -> dict[str, Any]:
     """Attributes of a new store."""
     return {
-        "title": sweep.settings.title or str(sweep.document.value.get("title", "")),
+        **attributes_of_sweep(sweep),
         "description": layout.recorder.describe(),
         "license": LICENCE,
-        "sweep": sweep.text,
         "sweep_id": sweep.identity,
         "samples_per_specimen": sweep.per_specimen,
         "seed": sweep.settings.seed,
         "kind": sweep.kind,
         "codes": [code_identity()],
         "versions": dict(_versions()),
-        "limits": sweep.settings.limits,
         "options": {
             p.variable: [_shown(option) for option in p.distribution.options or ()] for p in sweep.places if _by_index(p)
         },
     }
+
+
+def attributes_of_sweep(sweep: Sweep) -> dict[str, Any]:
+    """Those that may change when a store is gone on with: the text of the sweep, and what of it the card says."""
+    title = sweep.settings.title or str(sweep.document.value.get("title", ""))
+    return {"title": title, "sweep": sweep.text, "limits": sweep.settings.limits}
 
 
 def check_same(sweep: Sweep, attributes: dict[str, Any], place: Path) -> None:
@@ -55,6 +59,7 @@ def check_same(sweep: Sweep, attributes: dict[str, Any], place: Path) -> None:
     if attributes.get("sweep_id") == sweep.identity:
         return
     earlier, now = (parsed_json(text, f"the sweep in {place}") for text in (attributes["sweep"], sweep.text))
+    earlier, now = (deciding(text) if isinstance(text, dict) else text for text in (earlier, now))
     where = one_line(_difference(earlier, now, ""))
     if not where:
         raise StorageError(f"{one_line(place)}/{META}: sweep_id is not that of its sweep; bring back a copy of it")

@@ -19,7 +19,7 @@ from tactsim.case.loading import Place as Where
 from tactsim.case.loading import case_error, read_document
 from tactsim.case.model import SCHEMA as CASE_SCHEMA
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
-from tactsim.dataset.sampling.settings import SCHEMA, SweepSettings
+from tactsim.dataset.sampling.settings import OF_THE_CARD, SCHEMA, SweepSettings
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.errors import CaseError, InputError, suggestion
 from tactsim.interfaces.distributions import READERS, Distribution, Listed, distribution
@@ -66,8 +66,11 @@ class Sweep:
 
     @property
     def identity(self) -> str:
-        """Sixteen hexadecimal digits that say which data the sweep makes; of designs that go on, for any number of samples."""
-        content = json.loads(self.text)
+        """Sixteen hexadecimal digits that say which data the sweep makes; of designs that go on, for any number of samples.
+
+        What the card says, and how long a sample may take, make no other data.
+        """
+        content = deciding(json.loads(self.text))
         if self.extendable:
             content[SECTION].pop("samples")
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
@@ -80,6 +83,14 @@ class Sweep:
     def extendable(self) -> bool:
         """Whether more samples leave those before as they are."""
         return self.settings.design in ("sobol", "random")
+
+
+def deciding(content: dict[str, Any]) -> dict[str, Any]:
+    """The plain content of a sweep without what makes no other data."""
+    section = content.get(SECTION)
+    if isinstance(section, dict):
+        section = {key: value for key, value in section.items() if key not in (*OF_THE_CARD, "time_limit")}
+    return {key: value for key, value in content.items() if key != "title"} | {SECTION: section}
 
 
 def load_sweep(path: str | FilePath, overrides: tuple[str, ...] = (), samples: int | None = None) -> Sweep:

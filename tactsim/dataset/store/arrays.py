@@ -30,7 +30,7 @@ CHUNK_SAMPLES = 1024
 LARGEST_CHUNK = 256 * 2**20
 """Bytes of a chunk beyond which a single sample is no longer sensible: a history of 100 000 times of 2 x 16 x 10 taxels."""
 LONGEST_TEXT = 2**14
-"""Bytes of one stored text; reasons are cut at 500 characters."""
+"""Bytes of one stored text; reasons are cut at 500 characters, the warnings of a sample at 2 000."""
 MOST_NESTED = 64
 """Levels of lists and mappings in a description; a sweep file has some ten."""
 TYPES = ("float64", "float32", "int64", "int32", "int16", "int8", "uint64", "uint32", "uint16", "uint8", "bool", "string")
@@ -226,6 +226,7 @@ def index_variables(splits: tuple[str, ...]) -> list[Variable]:
     return [
         Variable("status", "1", "whether the sample was computed", "index", dtype="uint8", meanings=STATUS),
         Variable("reason", "1", "how the computation ended", "index", dtype="str"),
+        Variable("warnings", "1", "what the run of the sample warned of, a line each", "index", dtype="str"),
         Variable("specimen", "1", "number of the specimen, which samples may share", "index", dtype="int64"),
         Variable("split", "1", "part of the data set, by specimen", "index", dtype="uint8", meanings=splits),
         Variable("seed", "1", "seed of the noise of the sample, where it has noise", "index", dtype="uint64"),

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -31,7 +32,7 @@ GENERAL_LIMITS = (
 LIKELY = 0.99
 """Probability with which enough specimens put one into every split."""
 MOST_REASONS = 50
-"""Reasons of failures that are listed; the rest are counted."""
+"""Reasons of failures, and warnings, that are listed; the rest are counted."""
 
 
 def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
@@ -105,7 +106,9 @@ def _counts(store: Store, sweep: Sweep) -> list[str]:
     lines = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
     lines += [*empty_split_lines(empty_splits(counts, sweep.settings.splits), sweep.settings.splits), ""]
     failed = [(reason, str(count)) for reason, count in failures(store)]
-    return lines + (_table("Failures", ("reason", "samples"), failed) if failed else [])
+    warned = [(words, str(count)) for words, count in warnings_of(store)]
+    lines += _table("Failures", ("reason", "samples"), failed) if failed else []
+    return lines + (_table("Warnings of samples that are done", ("warning", "samples"), warned) if warned else [])
 
 
 def empty_split_lines(names: Sequence[str], splits: Splits) -> list[str]:
@@ -195,6 +198,7 @@ def description(path: str | Path) -> str:
     lines += [f"  licence {one_line(attributes['license'], 80)}, sweep {one_line(attributes['sweep_id'], 80)}"]
     lines += [f"  {name:<28} {count}" for name, count in [*status_counts(store).items(), *split_counts(store).items()]]
     lines += [f"  {count} x {reason}" for reason, count in failures(store)]
+    lines += [f"  {count} x warning: {words}" for words, count in warnings_of(store)]
     rows = variable_rows(store)
     name, shape, unit = (max((len(row[k]) for row in rows), default=0) for k in range(3))
     lines += [f"  {row[0]:<{name}}  {row[1]:<{shape}}  {row[2]:<{unit}}  {row[3]}" for row in rows]
@@ -238,13 +242,20 @@ def redrawn(store: Store) -> tuple[int, int]:
 def failures(store: Store) -> list[tuple[str, int]]:
     """Reasons of failed samples without their numbers, with counts, the most frequent first."""
     failed = np.flatnonzero(store.read("status") == FAILED)
-    if not failed.size:
-        return []
-    kinds = [one_line(kind_of(str(reason))) for reason in store.read("reason", failed)]
-    reasons, counts = np.unique(kinds, return_counts=True)
-    pairs = sorted(zip(map(str, reasons), map(int, counts), strict=True), key=lambda pair: -pair[1])
+    return _counted((one_line(kind_of(str(reason))) for reason in store.read("reason", failed)), "other reasons")
+
+
+def warnings_of(store: Store) -> list[tuple[str, int]]:
+    """Warnings of samples that are done without their numbers, with the number of samples, the most frequent first."""
+    done = np.flatnonzero(store.read("status") == DONE)
+    texts = (str(text).splitlines() for text in store.read("warnings", done))
+    return _counted((kind for lines in texts for kind in {one_line(kind_of(line)) for line in lines}), "other warnings")
+
+
+def _counted(kinds: Iterable[str], others: str) -> list[tuple[str, int]]:
+    pairs = Counter(kinds).most_common()
     rest = sum(count for _, count in pairs[MOST_REASONS:])
-    return pairs[:MOST_REASONS] + ([("other reasons", rest)] if rest else [])
+    return pairs[:MOST_REASONS] + ([(others, rest)] if rest else [])
 
 
 def variable_rows(store: Store) -> list[tuple[str, str, str, str]]:

@@ -107,19 +107,8 @@ class ClosedForm(Experiment):
 
     def begin(self) -> Course:
         """Evaluate at the sampled times."""
-        annulus = ViscoelasticAnnulus(
-            self.outer_radius,
-            self.inner_radius / self.outer_radius,
-            shear_compliance(self.material),
-            formula=self.formula,
-            radius_over_thickness=0.0 if self.thickness is None else self.outer_radius / self.thickness,
-            base=self.base,
-        )
-        times, history = self._times(), self.loading.history()
-        if self.loading.control == "force":
-            force, displacement = history.value(times), annulus.displacement(history, times)
-        else:
-            force, displacement = annulus.force(history, times), history.value(times)
+        annulus, times = self._annulus(), self._times()
+        displacement, force = self.course(times)
         status, reason = within_layer("end of the history", float(np.abs(displacement).max()), self.thickness)
         columns = (times, displacement, force, annulus.rise(displacement))
         steps = rows(self.history_units, columns)
@@ -132,6 +121,23 @@ class ClosedForm(Experiment):
                 assumptions=("linear viscoelasticity, incompressible, frictionless, bilateral contact of a flat annulus",),
                 warnings=self._warnings(times, force, displacement),
             )
+        )
+
+    def course(self, times: Array) -> tuple[Array, Array]:
+        """Displacement of the annulus (n,) in m, and the force (n,) in N on it, at times (n,) in s."""
+        annulus, history = self._annulus(), self.loading.history()
+        if self.loading.control == "force":
+            return annulus.displacement(history, times), history.value(times)
+        return history.value(times), annulus.force(history, times)
+
+    def _annulus(self) -> ViscoelasticAnnulus:
+        return ViscoelasticAnnulus(
+            self.outer_radius,
+            self.inner_radius / self.outer_radius,
+            shear_compliance(self.material),
+            formula=self.formula,
+            radius_over_thickness=0.0 if self.thickness is None else self.outer_radius / self.thickness,
+            base=self.base,
         )
 
     def _times(self) -> Array:

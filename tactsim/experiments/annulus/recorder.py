@@ -61,12 +61,16 @@ class ClosedFormRecorder(Recorder):
         return [reading(name, unit, words, prescribed=name == given, time=times) for name, (unit, words) in variables.items()]
 
     def readings(self, experiment: ClosedForm, result: Result, generator: np.random.Generator) -> Values:
-        """Linear between the times that the experiment sampled."""
-        times, columns = history(result)
-        at = self.settings.stored_times(float(times[-1]))
-        readings = {"time_s": at, **{name: np.interp(at, times, columns[name]) for name in HISTORY}}
+        """As the closed form has them at the stored times; a sensor reads a force that is straight between these and those that
+        the experiment samples."""
+        sampled, _ = history(result)
+        at = self.settings.stored_times(float(sampled[-1]))
+        times = np.union1d(sampled, at)
+        displacement, force = experiment.course(times)
+        stored = np.searchsorted(times, at)
+        readings = {"time_s": at, "displacement": displacement[stored], "force": force[stored]}
         if self.settings.reading:
-            readings |= self.settings.reading.read(times, columns["force"], at, generator)
+            readings |= self.settings.reading.read(times, force, at, generator)
         return readings
 
     def describe(self) -> str:

@@ -13,7 +13,7 @@ from tactsim.mechanics.contact.penetration_effect import bonded_block_rate
 from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mechanics.models.pressed_body import PressedBody
 from tactsim.mechanics.outcome.sufficient_contact import SufficientContact
-from tactsim.mechanics.paths.history_path import EquilibriumProblem, TimedPath, TimedState, smooth_intervals
+from tactsim.mechanics.paths.history_path import EquilibriumProblem, TimedPath, TimedState, TimeInterval, smooth_intervals
 
 SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
@@ -33,13 +33,20 @@ def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
     Without a tolerance of its own, a grasp gets one at its largest closing or force with which it misses as little force as a
     success may.
     """
-    duration, lumens = experiment.duration, experiment.lumens
-    histories = [experiment.loading.history(), *(lumen_history(lumen, duration) for lumen in lumens.values())]
-    start = TimedState.at_rest(model.body, model.start(experiment.contact, regularisation(experiment)), len(histories))
+    start = TimedState.at_rest(
+        model.body, model.start(experiment.contact, regularisation(experiment)), 1 + len(experiment.lumens)
+    )
     problem: EquilibriumProblem = grasped_block(experiment, model)
     if experiment.penetration_tolerance is None:
         problem = SufficientContact(problem, experiment.loading.least_and_most()[1], stiffest_block(experiment))
-    return TimedPath(problem, experiment.time.policy(experiment.materials), smooth_intervals(histories, duration), start)
+    return TimedPath(problem, experiment.time.policy(experiment.materials), grasp_intervals(experiment), start)
+
+
+def grasp_intervals(experiment: GraspSetup) -> tuple[TimeInterval, ...]:
+    """The smooth intervals of the closing or the force, and of the pressure in each lumen."""
+    duration, lumens = experiment.duration, experiment.lumens
+    histories = [experiment.loading.history(), *(lumen_history(lumen, duration) for lumen in lumens.values())]
+    return smooth_intervals(histories, duration)
 
 
 def regularisation(experiment: GraspSetup) -> Augmentation:

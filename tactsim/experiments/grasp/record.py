@@ -16,7 +16,7 @@ from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, 
 from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
-from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
+from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings, single_step
 from tactsim.experiments.grasp.warnings import ragged, smaller_elements, suction, uneven
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
@@ -57,6 +57,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         self.experiment, self._sourced = experiment, sourced
         self.readings: list[dict[str, JawReading]] = []
         self._read: MatrixReading | None = None
+        self._single: tuple[str, ...] = ()
         self._unread: str | None = None
 
     def values(self, state: TimedState) -> dict[str, float]:
@@ -105,6 +106,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             forces = np.array([[reading[side].taxels.taxels[2] for side in JAWS] for reading in self.readings])
             try:
                 self._read = readout.read(times, forces, layout.area)
+                self._single = single_step(readout, times, forces, layout.area)
             except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
                 self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
         findings = super().findings()
@@ -167,7 +169,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         """Warnings about readout, mesh, readings and volumes."""
         readout, warnings = self.experiment.readout, []
         if readout is not None and self._read is not None:
-            warnings = list(readout_warnings(readout, self._read, self.experiment.matrix.area))
+            warnings = [*self._single, *readout_warnings(readout, self._read, self.experiment.matrix.area)]
         if self._unread:
             warnings.append(self._unread)
         warnings += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]

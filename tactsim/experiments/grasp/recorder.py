@@ -110,6 +110,14 @@ class GraspRecorder(Recorder):
         variables += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]
         return [*variables, *(reading(name, unit, words, jaw=2) for name, (unit, words) in BESIDE.items())]
 
+    def longest_step(self, experiment: Grasp) -> float:
+        """That of its load steps."""
+        from tactsim.experiments.grasp.path import grasp_intervals  # loads the solver
+
+        policy = experiment.time.policy(experiment.materials)
+        changing = [interval for interval in grasp_intervals(experiment) if interval.changes]
+        return max((policy.largest(interval) for interval in changing), default=0.0)
+
     def readings(self, experiment: Grasp, result: Result, generator: np.random.Generator) -> Values:
         """Linear between the accepted steps, from nothing at 0 s; voltages at the last sample before."""
         times, columns = history(result)

@@ -8,7 +8,7 @@ from pathlib import Path
 from types import ModuleType
 
 import pytest
-from sweeps import Inline, sweep_file
+from sweeps import TEXT, Inline, sweep_file
 
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.layout import layout_of
@@ -33,6 +33,20 @@ def test_numbers_that_stand_for_words_are_named(store: tuple[Path, str]) -> None
     _, written = store
     assert "| status |  | 1 | whether the sample was computed: 0 pending, 1 done, 2 failed |" in written
     assert "by specimen: 0 train, 1 validation, 2 test, 3 softer |" in written
+
+
+def test_what_samples_warn_of_is_counted(tmp_path: Path) -> None:
+    deep = TEXT.replace("0.2 mm", "0.9 mm")
+    assert deep != TEXT
+    sweep = load_sweep(sweep_file(tmp_path, deep))
+    with opened_run(sweep, tmp_path / "s.zarr") as going:
+        going.compute(Inline(sweep), lambda tally: None)
+    stored = Store.open(tmp_path / "s.zarr")
+    counts = dict(card.warnings_of(stored))
+    (beyond,) = (words for words in counts if "linear theory" in words)
+    assert counts[beyond] == sum("linear theory" in text for text in stored.read("warnings")) > 0
+    assert beyond in card.description(tmp_path / "s.zarr")
+    assert "## Warnings of samples that are done" in card_text(stored, sweep, layout_of(sweep))
 
 
 def test_columns_of_long_names_align(store: tuple[Path, str], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -100,6 +100,15 @@ def test_read_forces_are_held_against_a_reference_read_alike(tmp_path: Path, pla
     assert np.abs(samples.references / samples.plain.at([t.closing for t in samples.truths]) - 1).max() > 0.05
 
 
+def test_readings_without_noise_are_refused(tmp_path: Path, plain: str) -> None:
+    """Round-off was taken for the noise of the sensors, so that every estimator saw a lump in every sample."""
+    quiet = READOUT.replace("white: 1 mV", "white: 0 V")
+    place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", quiet))
+    with pytest.raises(InputError, match=r"read without noise.*--noise '1 mN' \(in Python: noise=1e-3\)"):
+        judged_samples(place, [plain], source="read_force")
+    assert judged_samples(place, [plain], source="read_force", noise=1e-3).noise == pytest.approx(1e-3)
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

@@ -7,16 +7,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from sweeps import Inline
 
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.stick import Stick
 from tactsim.dataset.running.computing import computed
+from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.drawing import drawn_specimen
 from tactsim.dataset.sampling.layout import layout_of, split_of
 from tactsim.dataset.sampling.settings import SweepSettings
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.arrays import FAILED
 from tactsim.dataset.store.blocks import decoded
+from tactsim.errors import CaseError
+from tactsim.experiments.annulus.closed_form import ClosedForm
+from tactsim.experiments.annulus.recorder import ClosedFormRecorder
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.recorder import GraspRecorder
 from tactsim.experiments.recording import recorder_for
@@ -87,6 +92,23 @@ def grasp_result(steps: int) -> tuple[Grasp, Result]:
     return experiment, Result("grasp", Status.CONVERGED, "", quantities, steps=tuple(records), units=units)
 
 
+def test_stored_times_closer_than_the_steps_are_refused() -> None:
+    """Forces of a grasp in one step were stored at ten times, up to 62 % above those of ten steps."""
+    overrides = ("sweep.samples=3", "experiment.time.steps=2")
+    assert layout_of(load_sweep(CASES / "sweep_lumps.yaml", (*overrides, "sweep.times=2"))).variables
+    with pytest.raises(CaseError, match=r"sweep\.times: 3: stored times are 333.33 ms apart, .*every 500 ms.*steps: 3"):
+        layout_of(load_sweep(CASES / "sweep_lumps.yaml", (*overrides, "sweep.times=3")))
+
+
+def test_the_closed_form_is_stored_as_it_is_between_its_points() -> None:
+    few, many = (ClosedForm.example().model_copy(update={"points": points}) for points in (4, 2000))
+    recorder = ClosedFormRecorder(settings=SweepSettings(samples=1, times=24))
+    one, other = (recorder.readings(form, form.run(), np.random.default_rng(1)) for form in (few, many))
+    since = np.maximum(0.0, one["time_s"] - 2.0)
+    np.testing.assert_allclose(one["force"], 0.2 + 0.2 * np.sin(2 * np.pi * since), rtol=0, atol=1e-12)
+    np.testing.assert_allclose(one["displacement"], other["displacement"], rtol=1e-12)
+
+
 @pytest.mark.parametrize("steps", [1, 4, 7])
 def test_taxels_are_stored_at_even_times_whatever_the_steps(steps: int) -> None:
     experiment, result = grasp_result(steps)
@@ -146,6 +168,16 @@ def test_a_sample_that_takes_longer_than_it_may_is_marked_failed() -> None:
     assert block["status"].tolist() == [FAILED]
     assert block["reason"].tolist() == ["failed: took longer than the 1e-06 s that it was given"]
     assert np.isfinite(block["inclusion_radius"][0, 0])
+
+
+def test_samples_for_which_the_time_did_not_suffice_are_computed_again_with_more_of_it(tmp_path: Path) -> None:
+    again = {}
+    for limit in ("1 us", "2 us", "1 us"):
+        sweep = load_sweep(CASES / "sweep_lumps.yaml", ("sweep.samples=3", f"sweep.time_limit={limit}"))
+        with opened_run(sweep, tmp_path / "s.zarr", resume=bool(again)) as going:
+            going.compute(Inline(sweep), lambda tally: None)
+        again[limit] = going.tally.retried
+    assert again == {"1 us": 0, "2 us": 3}
 
 
 def test_the_pressure_in_an_artery_is_a_label() -> None:

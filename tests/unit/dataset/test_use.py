@@ -260,11 +260,12 @@ def test_bad_options_are_refused(tmp_path: Path, options: list[str], words: str,
 def test_progress_reports_rate_time_left_and_reasons() -> None:
     tally = Tally(samples=100, before=10, begin=time.monotonic() - 10)
     assert tally.line() == "10 of 100 samples, 0 failed; computing the first for 10 s"
-    tally.add(18, ["stopped at 3.5e-2 mm", "stopped at 7 mm"])
+    tally.add([*["the tissue buckles\nthe mesh is coarse"] * 2, *[""] * 16], ["stopped at 3.5e-2 mm", "stopped at 7 mm"])
     assert tally.line() == "30 of 100 samples, 2 failed, 2 samples/s, 35 s left"
     lines = tally.summary()
     assert lines[0] == "18 samples done, 2 failed in 10 s (2 samples/s)"
     assert lines[2] == "  2 x stopped at # mm"
+    assert {*lines[3:]} == {"  2 x warning: the tissue buckles", "  2 x warning: the mesh is coarse"}
 
 
 def test_the_slowest_samples_are_named_at_the_end() -> None:

@@ -1,6 +1,7 @@
 """A grasp that ends in voltages, and the same from its stored result."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,9 +10,11 @@ from scenes import unmarked_figures
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.matrix_readout import MatrixReadoutRun
+from tactsim.experiments.grasp.taxel_voltages import single_step
 from tactsim.plotting import figures_for
 from tactsim.results import Status
 from tactsim.results.writing import write_result
+from tactsim.sensors.films.capacitive_film import CapacitiveFilm
 from tactsim.sensors.matrix_readout import MatrixReadout
 
 READOUT = MatrixReadout(seed=4)
@@ -38,6 +41,15 @@ def test_a_grasp_with_a_readout_has_the_voltages_of_18_sensors_over_time(read_gr
     assert np.abs(error).max() <= float(value(read_grasp, "read_force_largest_error"))
     assert any("calibration by the film's own line" in assumption for assumption in read_grasp.assumptions)
     assert "taxel_voltages.png" in figures_for(read_grasp)
+
+
+def test_a_film_that_creeps_is_warned_of_where_one_step_is_read():
+    times, forces = np.array([1.0]), np.full((1, 2, 3, 3), 0.4)
+    (warning,) = single_step(READOUT, times, forces, 81e-6)
+    assert "take time.steps: 5" in warning
+    elastic = SimpleNamespace(film_of=lambda area: CapacitiveFilm.example())
+    assert single_step(elastic, times, forces, 81e-6) == ()
+    assert single_step(READOUT, np.array([0.5, 1.0]), np.repeat(forces, 2, axis=0), 81e-6) == ()
 
 
 def test_without_a_readout_a_grasp_ends_at_the_forces():
