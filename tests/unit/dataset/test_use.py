@@ -19,15 +19,18 @@ from fork_server import forked_python
 from sweeps import compute_once_here, sweep_file
 
 from tactsim.cli import main
-from tactsim.dataset import TorchSamples, load, sample_case
+from tactsim.dataset import TorchSamples, checking, load, sample_case
 from tactsim.dataset.checking import check
 from tactsim.dataset.running.run import Tally
-from tactsim.dataset.sampling.layout import layout_of
+from tactsim.dataset.sampling.layout import Layout, layout_of
+from tactsim.dataset.sampling.stored import stored_layout
 from tactsim.dataset.sampling.sweep import sweep_of_text
-from tactsim.dataset.store.arrays import FAILED
+from tactsim.dataset.store.arrays import DONE, FAILED, index_variables
 from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.verifying import ChunkRead
 from tactsim.errors import InputError, StorageError, UnknownName
+from tactsim.interfaces.variable import Variable, reading
 from tactsim.storage.building import MARK
 
 
@@ -112,6 +115,30 @@ def test_planted_faults_are_found(store: Path, kind: str, capsys: pytest.Capture
         assert len(findings) == 1
     assert main(["data", "check", str(store)]) == 4
     assert kind in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("variable", "suspected"),
+    [
+        (reading("outside_force", "N", "beside the matrix", jaw=2), False),
+        (reading("taxel_force", "N", "on each taxel", time=1, jaw=2, row=2, column=1), False),
+        (reading("taxel_force", "N", "on each taxel", time=1, jaw=2, row=3, column=3), True),
+        (reading("taxel_force", "N", "on each taxel", time=4, jaw=2, row=2, column=2), True),
+        (reading("force", "N", "on the annulus", time=4), True),
+        (reading("force", "N", "on the annulus", time=1), False),
+        (reading("displacement", "m", "of the annulus", time=4, prescribed=True), False),
+    ],
+)
+def test_equal_entries_are_suspected_unless_they_may_mirror_each_other(
+    kept: Path, monkeypatch: pytest.MonkeyPatch, variable: Variable, suspected: bool
+) -> None:
+    """A grasp without a lump presses equally on both jaws, so that a data set of it had findings."""
+    store = Store.open(kept)
+    values = {"status": np.array([DONE]), "code": np.array([0]), variable.name: np.full((1, *variable.sizes), 0.25)}
+    whole = (variable, *(one for one in index_variables(()) if one.name in values))
+    monkeypatch.setattr(checking, "computed_chunks", lambda *_: [ChunkRead(0, np.array([0]), values)])
+    findings = checking.value_findings(store, Layout(stored_layout(store)[1].recorder, whole), np.array([DONE]))
+    assert [finding.kind for finding in findings] == (["constant"] if suspected else [])
 
 
 def test_the_same_case_twice_is_found(store: Path) -> None:
