@@ -14,10 +14,11 @@ from tactsim.dataset.running.computing import computed
 from tactsim.dataset.running.executors import Executor, TaskOutcome
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.sweep import Sweep
-from tactsim.dataset.store.arrays import DONE, FAILED, kind_of
+from tactsim.dataset.store.arrays import DONE, FAILED
 from tactsim.dataset.store.blocks import Block, Journal, decoded, refuse_unfitting
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import write
+from tactsim.dataset.text_counts import TextCounts
 from tactsim.errors import StorageError, TactsimError
 from tactsim.outside.text import one_line
 
@@ -43,7 +44,7 @@ class Tally:
     before: int = 0
     done: int = 0
     failed: int = 0
-    reasons: Counter[str] = field(default_factory=Counter)
+    reasons: TextCounts = field(default_factory=TextCounts)
     begin: float = field(default_factory=time.monotonic)
     damaged: dict[str, int] = field(default_factory=dict)
     """Why samples of an earlier sweep are computed again -> how many; a sample may have several reasons."""
@@ -60,7 +61,7 @@ class Tally:
         """Counts new samples: those that are done, and the reasons of those that failed."""
         self.done += done
         self.failed += len(reasons)
-        self.reasons.update(kind_of(reason) for reason in reasons)
+        self.reasons.update(reasons)
 
     @property
     def rate(self) -> float:

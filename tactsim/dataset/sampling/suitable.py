@@ -79,7 +79,7 @@ def _tried(place: Place) -> list[Entry]:
     listed = place.distribution
     if not isinstance(listed, Listed):
         return [listed.value(share) for share in ENDS]
-    numbers = range(len(listed.options))
+    numbers = list(range(len(listed.options)))
     if listed.numbers is not None:
         fractions = [number for number in numbers if isinstance(listed.options[number], float)]
         numbers = sorted({0, len(listed.options) - 1, *fractions[:1]})

@@ -12,10 +12,11 @@ import numpy as np
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.settings import Splits
 from tactsim.dataset.sampling.sweep import Sweep
-from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, kind_of
+from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS
 from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import refuse_redescribed
+from tactsim.dataset.text_counts import TextCounts
 from tactsim.outside.text import markdown_table, one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
@@ -236,13 +237,11 @@ def redrawn(store: Store) -> tuple[int, int]:
 
 
 def failures(store: Store) -> list[tuple[str, int]]:
-    """Reasons of failed samples without their numbers, with counts, the most frequent first."""
+    """Reasons of failed samples, those that differ in their numbers only as one, with counts, the most frequent first."""
     failed = np.flatnonzero(store.read("status") == FAILED)
-    if not failed.size:
-        return []
-    kinds = [one_line(kind_of(str(reason))) for reason in store.read("reason", failed)]
-    reasons, counts = np.unique(kinds, return_counts=True)
-    pairs = sorted(zip(map(str, reasons), map(int, counts), strict=True), key=lambda pair: -pair[1])
+    reasons = TextCounts()
+    reasons.update(one_line(reason) for reason in store.read("reason", failed))
+    pairs = reasons.most_common()
     rest = sum(count for _, count in pairs[MOST_REASONS:])
     return pairs[:MOST_REASONS] + ([("other reasons", rest)] if rest else [])
 

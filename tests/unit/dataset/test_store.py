@@ -276,6 +276,7 @@ NO_SUCH_QUANTITY = "sweep.quantities.largest_froce: the result has no such quant
     ("asked", "words", "executor"),
     [
         ("largest_force: Pa", OF_ANOTHER_DIMENSION, Inline),
+        ("largest_froce: N", NO_SUCH_QUANTITY, Inline),
         pytest.param("largest_froce: N", NO_SUCH_QUANTITY, lambda sweep: LocalWorkers(sweep.text, 1), marks=pytest.mark.slow),
     ],
     ids=["another unit", "another name", "another name in a worker"],
