@@ -40,8 +40,8 @@ def refusals_of(error: ValidationError, value: Any, model: type[BaseModel]) -> d
     """Key path -> message for every place of ``value``, plain data, that the model refused."""
     schema = _schema_of(model)
     messages: dict[Path, list[str]] = {}
-    for detail in _details(error):
-        path = _path_in_file(detail["loc"], value, str(detail["type"]))
+    for detail in details(error):
+        path = path_in_file(detail["loc"], value, str(detail["type"]))
         if detail["type"] in ("too_short", "too_long") and _fits(detail.get("ctx", {}), value_at(value, path)):
             continue  # pydantic counts only the valid entries, and the others have their own message
         place, message = _explained(detail, path, value, schema)
@@ -65,14 +65,14 @@ def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
         return model.model_json_schema(by_alias=True)
 
 
-def _details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Iterator[dict[str, Any]]:
+def details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Iterator[dict[str, Any]]:
     """Every single refusal; a validator that itself validated a model wraps the refusals of that model."""
     for detail in error.errors(include_url=False):
         place = (*location, *detail["loc"])
         inner = detail.get("ctx", {}).get("error")
         inner = inner.reasons if isinstance(inner, Refused) else inner
         if isinstance(inner, ValidationError):
-            yield from _details(inner, place)
+            yield from details(inner, place)
         else:
             yield {**detail, "loc": place}
 
@@ -83,7 +83,7 @@ def as_written(value: Any) -> str:
     return words[value] if value is None or isinstance(value, bool) else shown(value)
 
 
-def _path_in_file(location: tuple[str | int, ...], value: Any, error_type: str) -> Path:
+def path_in_file(location: tuple[str | int, ...], value: Any, error_type: str) -> Path:
     """The key path without the names of union members that the validator puts into a location."""
     path: list[str | int] = []
     for position, key in enumerate(location):

@@ -18,7 +18,7 @@ from sweeps import Inline
 import tactsim as ts
 from tactsim.case.writing import case_text
 from tactsim.contact.jaw import Jaw
-from tactsim.dataset import TorchSamples
+from tactsim.dataset import TorchSamples, sample_case
 from tactsim.dataset.figures import card as dataset_card
 from tactsim.dataset.running import resuming
 from tactsim.dataset.running.executors import LocalWorkers
@@ -565,6 +565,9 @@ def test_the_signature_of_every_kind_reads_without_machinery() -> None:
     assert str(inspect.signature(ts.Sphere)) == "(*, center: tuple[float, float, float], radius: float)"
 
 
+VARIED = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
+
+
 @pytest.mark.parametrize(
     ("call", "needed"),
     [
@@ -573,9 +576,40 @@ def test_the_signature_of_every_kind_reads_without_machinery() -> None:
         (lambda result: result.save(None), "the folder of a result: needed: a path or a text, not None"),
         (lambda result: result.plot(3), "unknown figure '3'"),
         (lambda result: result["largest_force"].to(3), "needed: a unit as text, such as 'N', not 3"),
+        (lambda result: ts.load_data(None), "the folder of a data set: needed: a path or a text, not None"),
+        (lambda result: ts.sweep(VARIED, samples=2, out=None), "sweep: out: needed: a path or a text, not None"),
+        (lambda result: sample_case(None, 0), "the folder of a data set: needed: a path or a text, not None"),
+        (lambda result: ts.choice("2 mm", "3 mm", weights=1), "choice: weights: 1 must be a list of 2"),
+        (lambda result: result.experiment.vary(None), "vary: None is not a mapping from key paths to distributions; expected"),
+        (lambda result: result.experiment.vary([("outer_radius", ts.uniform(1, 2))]), "is not a mapping from key paths"),
+        (lambda result: result.experiment.vary({3: ts.uniform(1, 2)}), "vary: 3 is not a key path, which is a text"),
+        (lambda result: ts.load_case("annulus_icf").vary(None), "vary: None is not a mapping"),
+        (lambda result: ts.load_case("annulus_icf").vary({"recess": 1}), "(did you mean 'experiment.recess'?)"),
+        (
+            lambda result: ts.load_case("annulus_icf").vary({"title": 1}),
+            "vary: 'title' is not within the experiment;",
+        ),
     ],
-    ids=["load_case", "load_result", "save", "plot", "to"],
+    ids=[
+        *("load_case", "load_result", "save", "plot", "to", "load_data", "sweep_out", "sample_case", "weights", "no_places"),
+        *("pairs", "number_as_place", "case_without_places", "place_without_section", "title"),
+    ],
 )
 def test_a_value_of_another_type_is_refused_in_words(call: Any, needed: str) -> None:
     with pytest.raises(ts.InputError, match=re.escape(needed)):
         call(ts.ClosedForm.example().run())
+
+
+def test_a_case_varies_at_the_key_paths_of_its_file(tmp_path: Path) -> None:
+    case = ts.load_case("annulus_dynamic_load", {"title": "Presses", "output.fields": "none", "experiment.points": 5})
+    varied = case.vary({"experiment.outer_radius": ts.uniform("2 mm", "4 mm")})
+    data = ts.sweep(varied, samples=3, out=tmp_path / "presses.zarr", workers=1, splits={"train": 1.0, "validation": 0.0})
+    assert data.attrs["title"] == "Presses"
+    again = sample_case(tmp_path / "presses.zarr", np.int64(2))
+    assert (again.title, again.output.fields) == ("Presses", "none")
+    assert again.experiment.outer_radius == data["varied_outer_radius"].values[2]
+    with pytest.raises(ts.InputError, match=r"vary: unknown key 'outer_radios'.*did you mean 'outer_radius'"):
+        case.vary({"experiment.outer_radios": ts.uniform("2 mm", "4 mm")})
+    for wrong in ("0", None, 1.5, True):
+        with pytest.raises(ts.InputError, match="is not the number of a sample; the data set has samples 0 to 2"):
+            sample_case(tmp_path / "presses.zarr", wrong)

@@ -4,15 +4,17 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from typing import Annotated, Any, Literal
 
 from pydantic import Field, create_model
 
+from tactsim.errors import CaseError, shown
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Progress
+from tactsim.interfaces.variation import Variation, check_key_paths, check_places
 from tactsim.model import FrozenModel
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.presenter import presenter
@@ -83,6 +85,33 @@ class Case(FrozenModel):
         with collected_warnings() as caught:
             result = self.experiment.run(progress, time_limit=time_limit)
         return replace(result, title=self.title, provenance=self.provenance(), warnings=(*result.warnings, *caught.lines()))
+
+    def vary(self, places: Mapping[str, Any]) -> Variation:
+        """The case with distributions at some places: ``{"experiment.thickness": tactsim.uniform("2 mm", "6 mm")}``.
+
+        A place is a key path as in the case file; `tactsim.sweep` computes the samples, which keep the title of the case.
+
+        >>> import tactsim as ts
+        >>> case = ts.load_case("annulus_dynamic_load")
+        >>> case.vary({"experiment.outer_radius": ts.uniform("2 mm", "4 mm")})
+        <Variation of closed_form: outer_radius={'uniform': ['2 mm', '4 mm']}>
+
+        Raises
+        ------
+        CaseError
+            If it has no such place, a place is not in the experiment, or the places are no mapping from key paths.
+        """
+        check_key_paths(places)
+        within = {}
+        for place, distribution in places.items():
+            section, _, key = place.partition(".")
+            if section != "experiment" or not key:
+                near = f" (did you mean 'experiment.{place}'?)" if section in type(self.experiment).model_fields else ""
+                expected = "expected a key path of the case file, such as 'experiment.material'"
+                raise CaseError(f"vary: {shown(place)} is not within the experiment{near}; {expected}")
+            within[key] = distribution
+        check_places(self.experiment, within)
+        return Variation(self.experiment, within, self)
 
     def at_rest(self) -> Result:
         """What would be computed: the tissue with its mesh and the bodies that press on it, as a result that has a sketch.

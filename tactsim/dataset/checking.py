@@ -30,6 +30,8 @@ FORM = ("dtype", "shape")
 MADE_LATER = ("codes", "versions", "schema", ARRAYS)
 """Attributes that do not follow from the sweep."""
 AGAIN = "go on with --resume, which computes them again, or bring back a copy"
+MIRRORED = 2
+"""Entries of a dimension that may be mirror images of each other."""
 SHOWN = 10
 """Samples named in one finding."""
 
@@ -262,7 +264,9 @@ def _look(read: ChunkRead, layout: Layout, faults: Faults, codes: int) -> None:
 
 
 def _may_not_rest(variable: Variable) -> bool:
-    return not variable.prescribed and bool(variable.sizes) and int(np.prod(variable.sizes)) > 1
+    """Whether a sample in which all its entries are equal is at fault: mirror images are equal, of two jaws, rows or columns."""
+    dimensions = zip(variable.dimensions, variable.sizes, strict=True)
+    return not variable.prescribed and any(size > (1 if name == "time" else MIRRORED) for name, size in dimensions)
 
 
 def _as_findings(faults: Faults) -> list[Finding]:

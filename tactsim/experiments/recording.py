@@ -5,13 +5,14 @@ from __future__ import annotations
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.errors import CaseError, UnknownName
+from tactsim.errors import CaseError, InvalidQuantity, UnknownName
 from tactsim.interfaces import Experiment, Recorder
 from tactsim.interfaces.recording import Recording, Values
 from tactsim.interfaces.variable import Variable, reading
 from tactsim.registry import kind_class, kinds
 from tactsim.results.result import Result
 from tactsim.sensors.force_reading import ForceReading
+from tactsim.units import conversion
 
 
 class RecordingSettings(Recording):
@@ -32,7 +33,7 @@ def numbers(recorder: Recorder, result: Result) -> Values:
     Raises
     ------
     CaseError
-        If the result has none of that name, calls it by another unit, or it is not one number.
+        If the result has none of that name, its unit has another dimension, or it is not one number.
     """
     return {variable.name: _number(recorder, variable, result) for variable in _scalars(recorder)}
 
@@ -53,10 +54,12 @@ def _number(recorder: Recorder, variable: Variable, result: Result) -> Array:
             raise CaseError(f"sweep.quantities.{variable.name}: the result has no such quantity; it has {known}")
         return np.array(np.nan)
     value = np.asarray(quantity.value, dtype=float)
-    if value.size != 1 or quantity.unit != variable.unit:
-        shape = f"{value.size} values in {quantity.unit}"
-        raise CaseError(f"sweep.quantities.{variable.name}: {shape}; needed: one number in {variable.unit}")
-    return value.reshape(())
+    if value.size != 1:
+        raise CaseError(f"sweep.quantities.{variable.name}: the result has {value.size} values; needed: one number")
+    try:
+        return np.asarray(value.reshape(()) * conversion(quantity.unit, variable.unit))
+    except InvalidQuantity as error:
+        raise CaseError(f"sweep.quantities.{variable.name}: {error}; expected a unit of its dimension") from None
 
 
 def history(result: Result) -> tuple[Array, dict[str, Array]]:

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import Annotated
+from typing import Annotated, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from tactsim.array import Array
+from tactsim.errors import shown
 from tactsim.model import FrozenModel
+from tactsim.units import is_unit
 
 Values = dict[str, Array]
 """Values of variables by name."""
@@ -29,9 +31,18 @@ class Recording(FrozenModel):
     times: Annotated[int, Field(ge=1, le=100_000)] = 1
     """Stored times of a history, evenly spaced up to its end; 1 stores the end."""
     quantities: dict[str, str] | None = None
-    """Name -> unit of the numbers of a result that are stored; by default those that the kind of experiment declares."""
+    """Name of a number of the result -> unit in which it is stored, any of its dimension, such as mN; by default the numbers that
+    the kind of experiment declares."""
     reading: ForceReader | None = None
     """Sensor through which a stored force is read as well; null reads none."""
+
+    @model_validator(mode="after")
+    def _known_units(self) -> Self:
+        for name, unit in (self.quantities or {}).items():
+            if not is_unit(unit) or not unit:
+                expected = "expected one such as 'mN', or '1' of a plain number"
+                raise ValueError(f"quantities.{name}: {shown(unit)} is no known unit; {expected}")
+        return self
 
     def stored_times(self, end: float) -> Array:
         """The stored times (times,) in s of a history that ends at ``end``."""

@@ -108,7 +108,7 @@ class Runnable(CaseKind):
         Raises
         ------
         CaseError
-            If it has no such place.
+            If it has no such place, or the places are no mapping from key paths.
         """
         check_places(self, places)
         return Variation(self, dict(places))

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from tactsim.errors import CaseError, InvalidQuantity, shown, suggestion
 from tactsim.model import FrozenModel, plain
 from tactsim.units import written
+
+EXAMPLE = "{'key.path': tactsim.uniform(low, high)}"
+"""What `vary` takes, as messages show it."""
 
 
 @dataclass(frozen=True)
@@ -17,6 +20,8 @@ class Variation:
 
     experiment: Any
     places: Mapping[str, Any]
+    case: Any = None
+    """The case that the experiment is of, whose title and output the samples have; None of an experiment alone."""
 
     def __repr__(self) -> str:
         """The kind and what varies: the whole experiment would fill a page of a notebook."""
@@ -71,7 +76,7 @@ def normal(mean: Any, deviation: Any, *, low: Any = None, high: Any = None) -> d
     return _checked({"normal": written([mean, deviation])} | ({} if low is None else {"within": written([low, high])}))
 
 
-def choice(*options: Any, weights: tuple[float, ...] | None = None) -> dict[str, Any]:
+def choice(*options: Any, weights: Iterable[float] | None = None) -> dict[str, Any]:
     """One of the options, numbers, quantities, names, or models such as materials; equally probable without weights.
 
     >>> import tactsim as ts
@@ -86,7 +91,8 @@ def choice(*options: Any, weights: tuple[float, ...] | None = None) -> dict[str,
     if not options or (len(options) == 1 and isinstance(options[0], list | tuple)):
         given = f"{shown(options[0])} is one option" if options else "no option is given"
         raise InvalidQuantity(f"choice: {given}; give the options one by one, such as choice('2 mm', '4 mm')")
-    return _checked({"choice": plain(options)} | ({} if weights is None else {"weights": list(weights)}))
+    given_weights = list(weights) if isinstance(weights, Iterable) else weights
+    return _checked({"choice": plain(options)} | ({} if weights is None else {"weights": written(given_weights)}))
 
 
 def check_places(experiment: FrozenModel, places: Mapping[str, Any]) -> None:
@@ -95,13 +101,29 @@ def check_places(experiment: FrozenModel, places: Mapping[str, Any]) -> None:
     Raises
     ------
     CaseError
-        With the key path, the key that is unknown, and those that are known.
+        If they are no mapping of key paths, or with the key path, the key that is unknown, and those that are known.
     """
+    check_key_paths(places)
     for place in places:
         keys = place.split(".")
         outer = {".".join(keys[:length]) for length in range(1, len(keys))}
         if not places.keys() & (outer | {f"{part}.kind" for part in outer}):
             _check_place(experiment, keys)
+
+
+def check_key_paths(places: object) -> None:
+    """Check that what shall vary is a mapping from key paths.
+
+    Raises
+    ------
+    CaseError
+        With what it is instead.
+    """
+    if not isinstance(places, Mapping):
+        raise CaseError(f"vary: {shown(places)} is not a mapping from key paths to distributions; expected {EXAMPLE}")
+    for place in places:
+        if not isinstance(place, str):
+            raise CaseError(f"vary: {shown(place)} is not a key path, which is a text; expected {EXAMPLE}")
 
 
 def _check_place(value: Any, keys: list[str]) -> None:

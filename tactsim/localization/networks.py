@@ -21,6 +21,9 @@ from tactsim.outside.text import one_line
 SCHEMA = "tactsim/learned/1"
 OUTPUTS = ("x", "y", "z", "radius")
 """Order of what the networks give of a lump."""
+ARCHIVE = b"PK"
+"""What a file of arrays begins with."""
+TRAINED = "tactsim data train makes one from a data set of grasps"
 TINY = 1e-9
 """Change over the whole force of the reference below which there is none."""
 
@@ -129,7 +132,10 @@ def read_weights(path: str | Path) -> LearnedWeights:
     StorageError
         If there is no such file, or it does not hold the weights of this version.
     """
-    file = read_arrays(opened(path, "weights").read(), str(path), largest=LARGEST_FOREIGN)
+    content = opened(path, "weights").read()
+    if not content.startswith(ARCHIVE):
+        raise StorageError(f"{one_line(path)} is no file of a learned estimator; {TRAINED}")
+    file = read_arrays(content, str(path), largest=LARGEST_FOREIGN)
     try:
         if str(file["schema"]) != SCHEMA:
             raise StorageError(f"{path} has the schema {one_line(file['schema'], 40)!r}; this tactsim reads {SCHEMA!r}")
@@ -139,7 +145,8 @@ def read_weights(path: str | Path) -> LearnedWeights:
         held_out = int(file["held_out"])
         weights = LearnedWeights(layout=layout, places=tuple(places), presence=presence, held_out=held_out, **numbers)
     except (ValueError, LookupError, TypeError, OverflowError, ValidationError) as error:
-        raise StorageError(f"{path} does not hold the weights of a learned estimator: {one_line(error, 120)}") from None
+        reason = f"does not hold the weights of a learned estimator: {one_line(error, 120)}"
+        raise StorageError(f"{one_line(path)} {reason}; {TRAINED}") from None
     if not weights.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
         raise StorageError(f"{path} holds no networks or numbers that are not finite; train the estimator anew")
     return weights

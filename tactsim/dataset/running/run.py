@@ -14,10 +14,11 @@ from tactsim.dataset.running.computing import computed
 from tactsim.dataset.running.executors import Executor, TaskOutcome
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.sweep import Sweep
-from tactsim.dataset.store.arrays import DONE, FAILED, kind_of
+from tactsim.dataset.store.arrays import DONE, FAILED
 from tactsim.dataset.store.blocks import Block, Journal, decoded, refuse_unfitting
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import write
+from tactsim.dataset.text_counts import LONGEST_WARNING, TextCounts
 from tactsim.errors import StorageError, TactsimError
 from tactsim.outside.text import one_line
 
@@ -45,9 +46,9 @@ class Tally:
     before: int = 0
     done: int = 0
     failed: int = 0
-    reasons: Counter[str] = field(default_factory=Counter)
-    warned: Counter[str] = field(default_factory=Counter)
-    """Warnings of samples that are done, without their numbers -> of how many."""
+    reasons: TextCounts = field(default_factory=TextCounts)
+    warned: TextCounts = field(default_factory=lambda: TextCounts(LONGEST_WARNING))
+    """Warnings of samples that are done -> of how many."""
     begin: float = field(default_factory=time.monotonic)
     damaged: dict[str, int] = field(default_factory=dict)
     """Why samples of an earlier sweep are computed again -> how many; a sample may have several reasons."""
@@ -67,8 +68,8 @@ class Tally:
         self.done += len(warnings)
         self.failed += len(reasons)
         for text in warnings:
-            self.warned.update({kind_of(line) for line in text.splitlines()})
-        self.reasons.update(kind_of(reason) for reason in reasons)
+            self.warned.update_of_one(text.splitlines())
+        self.reasons.update(reasons)
 
     @property
     def rate(self) -> float:

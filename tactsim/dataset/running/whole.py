@@ -21,6 +21,7 @@ from tactsim.dataset.use.card import adopt_earlier_files, write_card
 from tactsim.errors import CaseError, InputError, shown
 from tactsim.interfaces.variation import Variation
 from tactsim.model import plain
+from tactsim.outside.files import named_path
 from tactsim.outside.text import one_line
 from tactsim.progress import count_bar
 from tactsim.refusals import unit_at
@@ -58,13 +59,13 @@ def sweep(
 
     Parameters
     ----------
-    variation : of `Experiment.vary`
+    variation : of `Experiment.vary` or `Case.vary`
     out : folder of the data set
     samples : number of samples; of a grid it follows from the places
     workers : processes, by default one for each core if it pays
     resume : whether to go on in a data set that an earlier call left
     accept_changed_code : whether to go on although tactsim has changed since; what follows is marked with its code
-    title : one line for the card
+    title : one line for the card; that of the case if there is none
     **settings : of the section ``sweep`` of a sweep file, such as ``seed``, ``design``, ``splits``
 
     Raises
@@ -72,8 +73,8 @@ def sweep(
     CaseError
         If a place, a distribution or a setting is wrong.
     InputError
-        If nothing varies, the experiment, or what it is made of, is of a class that a worker process cannot load, or there are no
-        workers.
+        If nothing varies, the experiment, or what it is made of, is of a class that a worker process cannot load, there are no
+        workers, or ``out`` is neither a path nor a text.
     StorageError
         If the place is taken or cannot be written.
     """
@@ -81,6 +82,7 @@ def sweep(
     from tactsim.dataset.use.loading import load
 
     asked = _sweep_of(variation, title, settings | ({} if samples is None else {"samples": samples}))
+    out = named_path(out, "sweep: out")
     with (
         closing(LocalWorkers.of(asked, workers)) as executor,
         opened_run(asked, out, resume=resume, accept_changes=accept_changed_code) as run,
@@ -114,7 +116,8 @@ def _resumable(out: str | Path) -> Iterator[None]:
 def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Sweep:
     if not isinstance(variation, Variation):
         raise InputError(f"sweep: {shown(variation)} does not vary; expected experiment.vary({{'key.path': uniform(low, high)}})")
-    document = Document(case_document(variation.experiment, complete=True) | {"title": title, "schema": SCHEMA})
+    whole = case_document(variation.case or variation.experiment, complete=True)
+    document = Document(whole | {"title": title or whole["title"], "schema": SCHEMA})
     try:
         for place, distribution in variation.places.items():
             keys = place.split(".")

@@ -1,4 +1,4 @@
-"""JSON Schema of a sweep file: that of a case in which a distribution may stand for any value, with the section sweep."""
+"""JSON Schema of a sweep file: that of a case whose experiment may have a distribution for any value, with the section sweep."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from tactsim.case.json_schema import DRAFT, case_json_schema, described
+from tactsim.case.model import Output
 from tactsim.dataset.sampling.settings import SCHEMA, SweepSettings
 from tactsim.dataset.sampling.sweep import SECTION
 from tactsim.interfaces.distributions import MOST_OPTIONS
@@ -28,20 +29,21 @@ VARYING = {"quantity": "varying_quantity", "number": "varying_number", "integer"
 def sweep_json_schema() -> Fragment:
     """JSON Schema (draft 7) of a sweep file with every registered experiment."""
     case, settings = case_json_schema(), _prefixed(described(SweepSettings))
-    definitions = {name: _inner(definition, f"#/$defs/{name}") for name, definition in case["$defs"].items()}
+    defined = case["$defs"].items()
+    definitions = {name: one if name == Output.__name__ else _inner(one, f"#/$defs/{name}") for name, one in defined}
     definitions |= {VARYING[kind]: _distributions(kind, item) for kind, item in ITEMS.items()}
     definitions |= {f"{PREFIX}{name}": definition for name, definition in settings.pop("$defs", {}).items()}
-    sections = {name: value for name, value in case["properties"].items() if name not in ("schema", "title")}
     properties = {
         "schema": case["properties"]["schema"] | {"const": SCHEMA, "description": "Version of the sweep format."},
         "title": case["properties"]["title"],
-        **{name: _inner(value, f"#/properties/{name}") for name, value in sections.items()},
+        "experiment": _inner(case["properties"]["experiment"], "#/properties/experiment"),
+        "output": case["properties"]["output"],
         SECTION: settings,
     }
     whole = case | {
         "$schema": DRAFT,
         "title": "tactsim sweep",
-        "description": "A case in which values vary.",
+        "description": "A case in which values of the experiment vary.",
         "$defs": definitions,
     }
     return whole | {"properties": properties, "required": [*case["required"], SECTION]}

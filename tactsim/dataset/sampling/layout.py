@@ -11,6 +11,7 @@ import numpy as np
 from tactsim.case.model import Case, experiment_kinds
 from tactsim.dataset.sampling.drawing import drawn_specimen, fault_of
 from tactsim.dataset.sampling.settings import Condition
+from tactsim.dataset.sampling.suitable import check_suitable
 from tactsim.dataset.sampling.sweep import SECTION, Sweep, is_distribution
 from tactsim.dataset.store.arrays import index_variables
 from tactsim.errors import CaseError, suggestion
@@ -88,8 +89,9 @@ def first_case(sweep: Sweep) -> Case:
     Raises
     ------
     CaseError
-        If none of the first is possible.
+        If a distribution does not suit its place, or none of the first cases is possible.
     """
+    check_suitable(sweep)
     fault, last = fault_of(sweep), None
     if fault:
         raise CaseError(fault)

@@ -23,7 +23,7 @@ from tactsim.dataset.sampling.settings import OF_THE_CARD, SCHEMA, SweepSettings
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.errors import CaseError, InputError, suggestion
 from tactsim.interfaces.distributions import READERS, Distribution, Listed, distribution
-from tactsim.refusals import as_written
+from tactsim.refusals import as_written, value_at
 
 SECTION = "sweep"
 
@@ -162,6 +162,10 @@ def _sized(document: Document, where: Where, settings: SweepSettings, samples: i
     if not places:
         hint = "nothing varies; write a distribution for a number: {uniform: [2 mm, 7 mm]}"
         raise YamlProblems(Problem(("experiment",), 0, hint))
+    for place in places:
+        if place.path[:1] != ("experiment",) or place.path[1:] in ((), ("kind",)):
+            written = f"{as_written(value_at(document.value, place.path))} is a distribution, which may only stand"
+            raise YamlProblems(Problem(place.path, 0, f"{written} within the experiment, whose kind is fixed; write one value"))
     keys = {place.key for place in places}
     for key in settings.within_specimen:
         if key not in keys:

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import json
 import math
-import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -214,11 +213,6 @@ def _lengths(value: Any, least: int) -> bool:
 
 def _bytes(shape: Iterable[int], kind: str) -> int:
     return math.prod(shape) * (8 if kind in ("string", "str") else np.dtype(kind).itemsize)
-
-
-def kind_of(reason: str) -> str:
-    """The reason of a failure without its numbers, so that equal faults count as one."""
-    return re.sub(r"[-+]?\d+(\.\d+)?([eE][-+]?\d+)?", "#", reason)[:160]
 
 
 def index_variables(splits: tuple[str, ...]) -> list[Variable]:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections import Counter
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -13,10 +12,11 @@ import numpy as np
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.settings import Splits
 from tactsim.dataset.sampling.sweep import Sweep
-from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, kind_of
+from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS
 from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import refuse_redescribed
+from tactsim.dataset.text_counts import LONGEST_WARNING, TextCounts
 from tactsim.outside.text import markdown_table, one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
@@ -240,20 +240,23 @@ def redrawn(store: Store) -> tuple[int, int]:
 
 
 def failures(store: Store) -> list[tuple[str, int]]:
-    """Reasons of failed samples without their numbers, with counts, the most frequent first."""
+    """Reasons of failed samples, those that differ in their numbers only as one, with counts, the most frequent first."""
     failed = np.flatnonzero(store.read("status") == FAILED)
-    return _counted((one_line(kind_of(str(reason))) for reason in store.read("reason", failed)), "other reasons")
+    reasons = TextCounts()
+    reasons.update(one_line(reason) for reason in store.read("reason", failed))
+    return _first(reasons, "other reasons")
 
 
 def warnings_of(store: Store) -> list[tuple[str, int]]:
-    """Warnings of samples that are done without their numbers, with the number of samples, the most frequent first."""
-    done = np.flatnonzero(store.read("status") == DONE)
-    texts = (str(text).splitlines() for text in store.read("warnings", done))
-    return _counted((kind for lines in texts for kind in {one_line(kind_of(line)) for line in lines}), "other warnings")
+    """Warnings of samples that are done, with the number of samples, the most frequent first."""
+    counts = TextCounts(LONGEST_WARNING)
+    for text in store.read("warnings", np.flatnonzero(store.read("status") == DONE)):
+        counts.update_of_one(map(one_line, str(text).splitlines()))
+    return _first(counts, "other warnings")
 
 
-def _counted(kinds: Iterable[str], others: str) -> list[tuple[str, int]]:
-    pairs = Counter(kinds).most_common()
+def _first(counts: TextCounts, others: str) -> list[tuple[str, int]]:
+    pairs = counts.most_common()
     rest = sum(count for _, count in pairs[MOST_REASONS:])
     return pairs[:MOST_REASONS] + ([(others, rest)] if rest else [])
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import operator
 import os
 from collections.abc import Callable, Iterable, Sequence
 from pathlib import Path
@@ -11,14 +12,19 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import DONE, FAILED
-from tactsim.errors import InputError, StorageError, UnknownName
+from tactsim.errors import InputError, StorageError, UnknownName, shown
 from tactsim.outside.extras import extras_named
+from tactsim.outside.files import named_path
 
 if TYPE_CHECKING:
     import xarray
 
     from tactsim.case.model import Case
     from tactsim.dataset.store.opening import Store
+
+
+DATA_SET = "the folder of a data set"
+"""What a path is of, as messages say."""
 
 
 def load(
@@ -48,6 +54,8 @@ def load(
     ------
     UnknownName
         If there is no such split or variable.
+    InputError
+        If the store is neither a path nor a text.
     StorageError
         If the folder is not a data set, was written by another version, or has holes: arrays or chunks of these samples that are
         gone, or arrays whose units or other attributes were changed; if ``verified``, also if a sample is not what was written.
@@ -56,7 +64,7 @@ def load(
     from tactsim.dataset.store.opening import Store
     from tactsim.dataset.store.verifying import refuse_changed, refuse_holes, refuse_redescribed
 
-    place = Store.open(store)
+    place = Store.open(named_path(store, DATA_SET))
     refuse_redescribed(place)
     whole = dataset_of(place)
     names = [*map(str, whole.data_vars), *place.missing]
@@ -96,7 +104,7 @@ def sample_case(store: str | Path, sample: int) -> Case:
     Raises
     ------
     InputError
-        If there is no such sample, or no draw of it was possible.
+        If there is no such sample, no draw of it was possible, or the store is neither a path nor a text.
     StorageError
         If the folder is not a data set, or this tactsim draws another case than was computed.
     """
@@ -104,9 +112,13 @@ def sample_case(store: str | Path, sample: int) -> Case:
     from tactsim.dataset.sampling.stored import stored_sweep
     from tactsim.dataset.store.opening import Store
 
-    place = Store.open(store)
+    place = Store.open(named_path(store, DATA_SET))
+    known = f"the data set has samples 0 to {place.samples - 1}"
+    if isinstance(sample, bool) or not hasattr(sample, "__index__"):
+        raise InputError(f"sample_case: {shown(sample)} is not the number of a sample; {known}")
+    sample = operator.index(sample)
     if not 0 <= sample < place.samples:
-        raise InputError(f"sample {sample}: the data set has samples 0 to {place.samples - 1}")
+        raise InputError(f"sample {sample}: {known}")
     sweep = stored_sweep(place)
     specimen, which = divmod(sample, sweep.per_specimen)
     drawn = drawn_specimen(sweep, specimen)[which]

@@ -66,6 +66,8 @@ def test_a_distribution_may_stand_for_a_quantity(validator: jsonschema.Draft7Val
         ("kind: neo_hookean", "kind: neo_hokean"),
         ("kind: closed_form", "kind: {choice: [closed_form, grasp]}"),
         ("points: 5", "points: {uniform: [1 mm, 2 mm]}"),
+        ("title: A small sweep", "title: {choice: [a, b]}"),
+        ("sweep:", "output: {fields: {choice: [all, none]}}\nsweep:"),
         ("train: 0.5", "train: {uniform: [0.1, 0.5]}"),
         ("seed: 7", "seed: -7"),
         ("sweep:", "swept:"),

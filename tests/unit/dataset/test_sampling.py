@@ -148,12 +148,69 @@ def test_splits_follow_specimens_and_rules(tmp_path: Path) -> None:
         ("train: 0.5", "train: 0.9", "add up to more than 1"),
         ("train: 0.5\n    validation: 0.25", "train: 1", r"train 1 and validation 0.1 \(if not given\) add up to more than 1"),
         ("seed: 7", "design: grid", "a grid takes lists"),
+        (
+            "A small sweep",
+            "{choice: [a, b]}",
+            r"sweep.yaml:2: title: {'choice': \['a', 'b'\]} is a distribution, .* within",
+        ),
+        ("  points: 5", "output: {fields: {choice: [all, none]}}", r"sweep.yaml:12: output.fields: .* may only stand within"),
+        ("kind: closed_form", "kind: {choice: [closed_form, grasp]}", "sweep.yaml:4: experiment.kind: .* whose kind is fixed"),
     ],
 )
 def test_what_cannot_be_swept_is_refused_with_its_place(tmp_path: Path, old: str, new: str, words: str) -> None:
     assert old in TEXT
     with pytest.raises(CaseError, match=words):
         layout_of(sweep_of(tmp_path, TEXT.replace(old, new)))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        (
+            "{uniform: [1 mm, 2.5 mm]}",
+            "{uniform: [0.001, 0.002]}",
+            r"6: experiment.inner_radius: .*, 0.002\]} .* has no unit",
+        ),
+        (
+            "{uniform: [1 mm, 2.5 mm]}",
+            "{uniform: [1 kPa, 2 kPa]}",
+            "6: experiment.inner_radius: .*'1 kPa' has the wrong dim",
+        ),
+        ("{uniform: [1 mm, 2.5 mm]}", "{choice: [1 mm, 2 mm, large]}", "6: experiment.inner_radius: .*'large' is not a quantity"),
+        (
+            "{uniform: [1 mm, 2.5 mm]}",
+            "{choice: [1 mm, {uniform: [3, 4]}]}",
+            "inner_radius.choice.1: .*3.0 has no unit",
+        ),
+        ("points: 5", "points: {uniform: [5, 9]}", r"12: experiment.points: .* whole number; these are drawn by {integer: \["),
+        ("points: 5", "points: {values: [5, 6, 7.5, 8]}", "12: experiment.points: .* 7.5 is not allowed"),
+        ("fractions: [0.5]", "fractions: [{uniform: [1 mm, 2 mm]}]", "fractions.0: .*'1 mm' is not allowed; expected a number"),
+        ("points: 5", "formula: {choice: [exact, exat]}", r"formula: .*\(did you mean .exact.\?\)"),
+    ],
+)
+def test_a_distribution_that_does_not_suit_its_place_is_refused_before_anything_is_drawn(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    assert old in TEXT
+    with pytest.raises(CaseError, match=words) as caught:
+        layout_of(sweep_of(tmp_path, TEXT.replace(old, new)))
+    assert "no case was accepted" not in str(caught.value)
+    assert "does not suit this place" in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("{uniform: [1 mm, 2.5 mm]}", "{uniform: [-1 mm, 2.5 mm]}"),
+        ("{uniform: [1 mm, 2.5 mm]}", "{normal: [2 mm, 1 mm]}"),
+        ("kind: ramp, to", "kind: {choice: [ramp, hold]}, to"),
+        ("points: 5", "points: {integer: [1, 9]}"),
+        ("points: 5", "thickness: {choice: [null, 20 mm]}"),
+    ],
+)
+def test_what_is_possible_in_part_is_drawn_again(tmp_path: Path, old: str, new: str) -> None:
+    assert old in TEXT
+    assert layout_of(sweep_of(tmp_path, TEXT.replace(old, new))).variables
 
 
 def test_a_kind_without_recorder_needs_names(tmp_path: Path) -> None:

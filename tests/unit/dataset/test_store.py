@@ -36,6 +36,7 @@ from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import chunk_samples, set_attributes
 from tactsim.dataset.use.card import redrawn, split_counts
+from tactsim.dataset.use.loading import load
 from tactsim.errors import CaseError, InputError, StorageError, TactsimError
 from tactsim.interfaces.variable import Variable
 from tactsim.shipped import CASES
@@ -270,13 +271,14 @@ def test_a_sample_that_fails_is_kept_with_its_reason(tmp_path: Path) -> None:
     assert sum(split_counts(store).values()) == 24 - failed.sum()
 
 
+OF_ANOTHER_DIMENSION = "largest_force: 'Pa' is not a unit of what is in 'N'; expected a unit of its dimension"
 NO_SUCH_QUANTITY = "sweep.quantities.largest_froce: the result has no such quantity; it has .*largest_force"
 
 
 @pytest.mark.parametrize(
     ("asked", "words", "executor"),
     [
-        ("largest_force: Pa", "sweep.quantities.largest_force: 1 values in N; needed: one number in Pa", Inline),
+        ("largest_force: Pa", OF_ANOTHER_DIMENSION, Inline),
         ("largest_froce: N", NO_SUCH_QUANTITY, Inline),
         pytest.param("largest_froce: N", NO_SUCH_QUANTITY, lambda sweep: LocalWorkers(sweep.text, 1), marks=pytest.mark.slow),
     ],
@@ -290,6 +292,20 @@ def test_a_quantity_that_no_result_has_ends_the_sweep_at_once(
     with pytest.raises(CaseError, match=words), closing(workers), opened_run(sweep, tmp_path / "s.zarr") as going:
         going.compute(workers, lambda tally: None)
     assert not (tmp_path / "s.zarr").exists(), "an empty store would refuse the sweep once it is corrected"
+
+
+def test_a_quantity_is_stored_in_the_unit_that_is_asked_for(tmp_path: Path) -> None:
+    asked = "{largest_force: mN, largest_displacement: m, rise_factor: '1'}"
+    stores = []
+    for words in (asked, asked.replace("mN", "N")):
+        (folder := tmp_path / str(len(stores))).mkdir()
+        stores.append(load(small_store(folder, TEXT.replace("times: 4", f"times: 4\n  quantities: {words}"))))
+    in_millinewtons, in_newtons = (store["largest_force"] for store in stores)
+    assert (in_millinewtons.attrs["units"], in_newtons.attrs["units"]) == ("mN", "N")
+    assert in_millinewtons.values == pytest.approx(1e3 * in_newtons.values, rel=1e-14)
+    assert np.array_equal(stores[0]["largest_displacement"].values, stores[1]["largest_displacement"].values)
+    with pytest.raises(CaseError, match=r"sweep.yaml:\d+: sweep.quantities.largest_force: 'furlongs' is no known unit"):
+        load_sweep(sweep_file(tmp_path, TEXT.replace("times: 4", "times: 4\n  quantities: {largest_force: furlongs}")))
 
 
 def test_noise_differs_from_sample_to_sample_without_a_word_in_the_file(tmp_path: Path) -> None:

@@ -19,15 +19,20 @@ from fork_server import forked_python
 from sweeps import compute_once_here, sweep_file
 
 from tactsim.cli import main
-from tactsim.dataset import TorchSamples, load, sample_case
+from tactsim.dataset import TorchSamples, checking, load, sample_case
 from tactsim.dataset.checking import check
 from tactsim.dataset.running.run import Tally
-from tactsim.dataset.sampling.layout import layout_of
+from tactsim.dataset.sampling.layout import Layout, layout_of
+from tactsim.dataset.sampling.stored import stored_layout
 from tactsim.dataset.sampling.sweep import sweep_of_text
-from tactsim.dataset.store.arrays import FAILED
+from tactsim.dataset.store.arrays import DONE, FAILED, index_variables
 from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.verifying import ChunkRead
+from tactsim.dataset.text_counts import TextCounts
+from tactsim.dataset.use.card import description, failures
 from tactsim.errors import InputError, StorageError, UnknownName
+from tactsim.interfaces.variable import Variable, reading
 from tactsim.storage.building import MARK
 
 
@@ -112,6 +117,30 @@ def test_planted_faults_are_found(store: Path, kind: str, capsys: pytest.Capture
         assert len(findings) == 1
     assert main(["data", "check", str(store)]) == 4
     assert kind in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("variable", "suspected"),
+    [
+        (reading("outside_force", "N", "beside the matrix", jaw=2), False),
+        (reading("taxel_force", "N", "on each taxel", time=1, jaw=2, row=2, column=1), False),
+        (reading("taxel_force", "N", "on each taxel", time=1, jaw=2, row=3, column=3), True),
+        (reading("taxel_force", "N", "on each taxel", time=4, jaw=2, row=2, column=2), True),
+        (reading("force", "N", "on the annulus", time=4), True),
+        (reading("force", "N", "on the annulus", time=1), False),
+        (reading("displacement", "m", "of the annulus", time=4, prescribed=True), False),
+    ],
+)
+def test_equal_entries_are_suspected_unless_they_may_mirror_each_other(
+    kept: Path, monkeypatch: pytest.MonkeyPatch, variable: Variable, suspected: bool
+) -> None:
+    """A grasp without a lump presses equally on both jaws, so that a data set of it had findings."""
+    store = Store.open(kept)
+    values = {"status": np.array([DONE]), "code": np.array([0]), variable.name: np.full((1, *variable.sizes), 0.25)}
+    whole = (variable, *(one for one in index_variables(()) if one.name in values))
+    monkeypatch.setattr(checking, "computed_chunks", lambda *_: [ChunkRead(0, np.array([0]), values)])
+    findings = checking.value_findings(store, Layout(stored_layout(store)[1].recorder, whole), np.array([DONE]))
+    assert [finding.kind for finding in findings] == (["constant"] if suspected else [])
 
 
 def test_the_same_case_twice_is_found(store: Path) -> None:
@@ -264,8 +293,39 @@ def test_progress_reports_rate_time_left_and_reasons() -> None:
     assert tally.line() == "30 of 100 samples, 2 failed, 2 samples/s, 35 s left"
     lines = tally.summary()
     assert lines[0] == "18 samples done, 2 failed in 10 s (2 samples/s)"
-    assert lines[2] == "  2 x stopped at # mm"
+    assert lines[2] == "  2 x stopped at 0.035 to 7 mm"
     assert {*lines[3:]} == {"  2 x warning: the tissue buckles", "  2 x warning: the mesh is coarse"}
+
+
+def test_reasons_that_differ_in_their_numbers_count_as_one_and_keep_them() -> None:
+    counts = TextCounts()
+    counts.update(["took longer than the 8 s that it was given"] * 3)
+    counts.update(
+        f"touch {touch} was not reached within {depth} mm" for touch, depth in ((1, "1.4"), (12, "0.9"), (3, "1.23456789"))
+    )
+    counts.update(["stopped: #1", "no numbers"])
+    assert counts.most_common() == [
+        ("took longer than the 8 s that it was given", 3),
+        ("touch 1 to 12 was not reached within 0.9 to 1.4 mm", 3),
+        ("stopped: #1", 1),
+        ("no numbers", 1),
+    ]
+    assert counts.most_common(1) == counts.most_common()[:1]
+    long = TextCounts()
+    long.update([f"{number} " + 200 * "x" + f" {number}" for number in (1, 2)])
+    assert long.most_common() == [("1 to 2 " + 158 * "x", 2)]
+    cut = TextCounts()
+    cut.update([159 * "x" + "1", 160 * "x" + "2", 160 * "x" + "3"])
+    assert cut.most_common() == [(160 * "x", 2), (159 * "x" + "1", 1)]
+
+
+def test_the_description_and_the_card_say_the_numbers_of_failures(store: Path) -> None:
+    opened = Store.open(store, writing=True)
+    for number in (3, 4, 5):
+        opened.group["status"][number] = FAILED
+        opened.group["reason"][number] = "took longer than the 8 s that it was given"
+    assert failures(Store.open(store)) == [("took longer than the 8 s that it was given", 3)]
+    assert "  3 x took longer than the 8 s that it was given" in description(store)
 
 
 def test_the_slowest_samples_are_named_at_the_end() -> None:

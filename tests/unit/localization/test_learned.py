@@ -59,6 +59,16 @@ def test_weights_are_read_as_they_were_written(tmp_path):
     assert not LearnedEstimator.checked(kept(tmp_path, weights(bias=-5.0))).estimate(given).present
 
 
+def test_a_file_that_was_not_trained_is_no_estimator(tmp_path):
+    case = tmp_path / "g.yaml"
+    case.write_text("schema: tactsim/case/1")
+    with pytest.raises(StorageError, match=r"g\.yaml is no file of a learned estimator; tactsim data train makes one"):
+        LearnedEstimator.checked(case)
+    np.savez(tmp_path / "other.npz", force=np.zeros(3))
+    with pytest.raises(StorageError, match="does not hold the weights of a learned estimator: 'schema'; tactsim data train"):
+        LearnedEstimator.checked(tmp_path / "other.npz")
+
+
 def test_where_the_readings_rise_apart_no_one_place_is_stated(tmp_path):
     learned, told = LearnedEstimator.checked(kept(tmp_path, weights())), readings()
     apart = np.zeros((2, 3, 3))
@@ -89,7 +99,7 @@ def test_foreign_readings_and_files_are_refused(tmp_path):
         estimator.estimate(Readings(PLAIN, LAYOUT, SIZE))
     for content in (b"nothing", b""):
         (tmp_path / "bad.npz").write_bytes(content)
-        with pytest.raises(StorageError, match=r"does not hold|is damaged"):
+        with pytest.raises(StorageError, match="is no file of a learned estimator"):
             LearnedEstimator.checked(tmp_path / "bad.npz")
     np.savez(tmp_path / "object.npz", schema=np.array({"a": 1}, dtype=object))
     with pytest.raises(StorageError, match=r"does not hold|is damaged"):

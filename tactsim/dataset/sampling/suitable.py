@@ -1,0 +1,113 @@
+"""Whether what a distribution draws has the type, the unit and the dimension of the place where it stands."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+from pydantic import ValidationError
+
+from tactsim.case.model import case_class, experiment_class
+from tactsim.case.yaml_reading import Path
+from tactsim.dataset.sampling.sweep import Place, Sweep, filled
+from tactsim.errors import CaseError, InvalidQuantity, TactsimError, UnknownName
+from tactsim.interfaces.distributions import Listed
+from tactsim.refusals import as_written, details, path_in_file, refusals_of, value_at
+
+ENDS = (0.0, 1.0 - 2.0**-53)
+"""Shares of the probability at which a distribution without options is tried."""
+MOST_TRIED = 100
+"""Cases that are tried: options of long lists within others are left to the drawing."""
+WHOLE = "a whole number"
+"""What `refusals` call a place that takes no fractions."""
+
+DEPENDENT = {
+    *("greater_than", "greater_than_equal", "less_than", "less_than_equal", "multiple_of", "too_short", "too_long"),
+    *("string_too_short", "string_too_long", "extra_forbidden", "missing", "assertion_error"),
+}
+"""Refusals by pydantic of what other draws may meet: bounds, and keys that belong to another kind."""
+
+Entry = tuple[Any, float]
+
+
+def check_suitable(sweep: Sweep) -> None:
+    """Check ends and options of every distribution against the field of its place.
+
+    What is out of bounds, alone or beside the values of other places, is left to the drawing, which draws again: a part of a
+    distribution may well be impossible.
+
+    Raises
+    ------
+    CaseError
+        With the distribution and one of its values that has another type, unit or dimension than the place.
+    """
+    try:
+        model = case_class(experiment_class(sweep.kind))
+    except UnknownName:
+        return  # the drawing says so
+    context = {"units": "required", "folder": sweep.document.folder}
+    entries = {place.path: _tried(place) for place in sweep.places}
+    before = {path: _cases_before(path, entries) for path in entries}
+    cases = max(before[path] * len(tried) for path, tried in entries.items())
+    for case in range(min(cases, MOST_TRIED)):
+        drawn = {path: tried[case // before[path] % len(tried)] for path, tried in entries.items()}
+        used: dict[Path, float] = {}
+        value = filled(sweep.document.value, (), drawn, used)
+        try:
+            model.model_validate_json(json.dumps(value), strict=True, context=context)
+        except ValidationError as error:
+            unsuitable = _wrong_in_type(error, value)
+            for path in used:
+                if (in_case := _in_case(path, entries)) in unsuitable and not isinstance(drawn[path][0], dict | list):
+                    raise _refused(sweep, path, refusals_of(error, value, model)[in_case]) from None
+        except TactsimError:
+            continue  # of a whole case, such as a file that is gone
+
+
+def _wrong_in_type(error: ValidationError, value: Any) -> set[Path]:
+    """Places that were refused for their type, unit or dimension by every alternative that they have."""
+    by_place: dict[Path, list[bool]] = {}
+    for detail in details(error):
+        error_type, cause = str(detail["type"]), detail.get("ctx", {}).get("error")
+        of_type = isinstance(cause, InvalidQuantity) if cause is not None else error_type not in DEPENDENT
+        by_place.setdefault(path_in_file(detail["loc"], value, error_type), []).append(of_type)
+    return {path for path, of_type in by_place.items() if all(of_type)}
+
+
+def _tried(place: Place) -> list[Entry]:
+    """Entries that stand for all: both ends; of options all, of those that are numbers the ends and a fraction."""
+    listed = place.distribution
+    if not isinstance(listed, Listed):
+        return [listed.value(share) for share in ENDS]
+    numbers = list(range(len(listed.options)))
+    if listed.numbers is not None:
+        fractions = [number for number in numbers if isinstance(listed.options[number], float)]
+        numbers = sorted({0, len(listed.options) - 1, *fractions[:1]})
+    return [(listed.options[number], float(number)) for number in numbers]
+
+
+def _cases_before(path: Path, entries: dict[Path, list[Entry]]) -> int:
+    """In how many cases every option is once drawn of the choices within which a place stands."""
+    cases = 1
+    for length in range(len(path)):
+        cases *= len(entries.get(path[:length], [None]))
+    return cases
+
+
+def _in_case(path: Path, entries: dict[Path, list[Entry]]) -> Path:
+    """The key path of a place in a case, where an option stands in place of its choice."""
+    kept: list[str | int] = []
+    number = 0
+    while number < len(path):
+        if path[:number] in entries:
+            number += 2  # the key choice and the number of the option
+            continue
+        kept.append(path[number])
+        number += 1
+    return tuple(kept)
+
+
+def _refused(sweep: Sweep, path: Path, reason: str) -> CaseError:
+    given = as_written(value_at(sweep.document.value, path))
+    hint = "; these are drawn by {integer: [first, last]} or listed by {values: [...]}" if reason.endswith(WHOLE) else ""
+    return sweep.error(path, f"{given} does not suit this place: {reason}{hint}")
