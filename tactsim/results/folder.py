@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
@@ -241,6 +241,13 @@ def _remove_own(path: Path) -> None:
 
 
 def _refuse_foreign_names(path: Path) -> None:
-    strangers = [name for name in names_in(path) if name != MANIFEST and not _OWN_NAME.fullmatch(name)]
+    """Refuses what neither the manifest of the folder names nor, without one, an earlier version wrote.
+
+    Contents are not read again: what is replaced was held against its manifest a moment before.
+    """
+    manifest = read_manifest(path)
+    written = set(manifest.files) if manifest is not None else set()
+    written |= {str(above) for name in written for above in PurePosixPath(name).parents}  # a removal cut short leaves them empty
+    strangers = sorted(name for name in names_in(path) - written - {MANIFEST} if not _OWN_NAME.fullmatch(name))
     if strangers:
         raise StorageError(f"{one_line(path)} holds {one_line(strangers[0])!r}, which tactsim did not write; move that away")
