@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.errors import InputError, UnknownName
+from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -19,9 +19,9 @@ NAME = "compare"
 SUMMARY = "put several stored results into one table and one figure"
 DESCRIPTION = """\
 Prints the numbers in which several stored results differ, a column for each result. With --out a
-folder is written: comparison.csv and comparison.md with every number, comparison.png with a curve
-for each result. A folder that holds several results, such as that of tactsim run CASE1 CASE2
---out DIR, stands for all of them.
+folder is written, in the place of an earlier comparison: comparison.csv and comparison.md with
+every number, comparison.png with a curve for each result. A folder that holds several results,
+such as that of tactsim run CASE1 CASE2 --out DIR, stands for all of them.
 """
 EXAMPLES = """\
 examples:
@@ -50,6 +50,8 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from tactsim.results import read_result
 
+    if arguments.out is not None:
+        refuse_result(arguments.out)
     folders = [folder for place in arguments.results for folder in _folders(place)]
     stored = {name: read_result(folder, fields=False) for name, folder in _named(folders).items()}
     if len(stored) < 2:
@@ -59,6 +61,18 @@ def run(arguments: argparse.Namespace) -> int:
         for file in one.changed:
             console.out(f"warning: {one_line(name)}: {file} was changed since tactsim wrote it")
     return 0
+
+
+def refuse_result(out: Path) -> None:
+    """Refuses the folder of a result as that of a comparison, which replaces an earlier one without a word.
+
+    Raises
+    ------
+    StorageError
+        If there is a result.
+    """
+    if (out / "result.json").exists():
+        raise StorageError(f"{one_line(out)} holds a result, which no comparison replaces; choose another folder")
 
 
 def report(results: Mapping[str, Result], out: Path | None, *, everything: bool = False, quiet: bool = False) -> None:
