@@ -98,7 +98,8 @@ def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: p
     assert main(["compare", "designs"]) == 0
     shown = capsys.readouterr().out.splitlines()
     assert shown[0].split() == ["large", "small"]
-    assert shown[2].split() == ["outer_radius", "[mm]", "4", "3"], "what differs between the cases stands first"
+    assert shown[2].split() == ["warnings", "1", "1"]
+    assert shown[3].split() == ["outer_radius", "[mm]", "4", "3"], "what differs between the cases stands first"
     assert not any(line.startswith("points") for line in shown)
     assert not any(line.startswith("largest_force ") for line in shown), "the force is that of both"
     assert main(["compare", "designs/small", "designs/large", "--all", "--out", "table"]) == 0
