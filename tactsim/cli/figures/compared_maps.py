@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -27,9 +28,11 @@ MOST_MAPPED = 5
 """More results than this have no maps beside each other."""
 MOST_WRITTEN = 10
 """Matrices with more rows or columns than this have no numbers written in them."""
-MAP_SIZE, HEAD = 1.75, 1.1
-"""Width and height in inches of a map with its names, and height of names and colour bars."""
-LONGEST_NAME = 22
+SMALL = 0.01
+"""Part of the largest number of a scale below which another is written with the decimals of that one."""
+MAP_SIZE, HEAD, BAR = 1.75, 1.1, 0.6
+"""Width and height in inches of a map with its names, height of names and a colour bar, and of one more."""
+LONGEST_NAME = 18
 
 
 @dataclass(frozen=True)
@@ -55,8 +58,8 @@ class TaxelMaps:
         """Width and height of the drawing in inches."""
         count = len(self.values[JAWS[0]])
         two = count == 2 and self.has_differences
-        rows = len(self.values) * (2 if self.has_differences and not two else 1)
-        return MAP_SIZE * (count + two), MAP_SIZE * rows + HEAD
+        below = self.has_differences and not two
+        return MAP_SIZE * (count + two), MAP_SIZE * len(self.values) * (1 + below) + HEAD + BAR * below
 
 
 def taxel_maps(results: Mapping[str, Result]) -> TaxelMaps | None:
@@ -65,9 +68,13 @@ def taxel_maps(results: Mapping[str, Result]) -> TaxelMaps | None:
         held = {side: [r[key] for r in results.values() if (key := f"{name}_{side}") in r] for side in JAWS}
         found = [one for ones in held.values() for one in ones]
         complete = all(len(ones) == len(results) for ones in held.values()) and len({one.unit for one in found}) == 1
-        if complete and len(results) <= MOST_MAPPED and all(one.numbers.ndim == 2 and one.numbers.size for one in found):
+        if complete and len(results) <= MOST_MAPPED and all(map(_is_map, found)):
             return TaxelMaps(words, found[0].unit, {side: tuple(ones) for side, ones in held.items()})
     return None
+
+
+def _is_map(quantity: Quantity) -> bool:
+    return quantity.numbers.ndim == 2 and bool(np.isfinite(quantity.numbers).any())
 
 
 def draw_maps(figure: SubFigure, maps: TaxelMaps, names: Sequence[str]) -> None:
@@ -81,20 +88,20 @@ def draw_maps(figure: SubFigure, maps: TaxelMaps, names: Sequence[str]) -> None:
     scale = ScalarMappable(Normalize(min(0.0, low), high if high > min(0.0, low) else 1.0), PRESSURE_COLOURS)
     differences = [one for side in JAWS for one in maps.apart(side) if one is not None]
     largest = max((float(np.nanmax(np.abs(one), initial=0.0)) for one in differences), default=0.0)
-    small, small_unit = scale_of(largest, maps.unit)
-    bound = small * largest or 1.0
+    small, small_unit = scale_of(largest, maps.unit) if largest else (factor, unit)
+    bound = small * largest or abs(scale.norm.vmax or 1.0)
     scale_apart = ScalarMappable(Normalize(-bound, bound), DIFFERENCE_COLOURS)
     for number, side in enumerate(JAWS):
         row = number if beside or not apart else 2 * number
         for axis, one in zip(grid[row], maps.values[side], strict=False):
-            _draw_map(axis, factor * one.numbers, scale, "{:.3g}")
+            _draw_map(axis, factor * one.numbers, scale)
         grid[row, 0].set_ylabel(f"{side} jaw")
         below = grid[row, count:] if beside else grid[row + 1, 1:] if apart else []
         for axis, values in zip(below, maps.apart(side), strict=False):
             if values is None:
                 axis.set_axis_off()
             else:
-                _draw_map(axis, small * values, scale_apart, "{:+.2g}")
+                _draw_map(axis, small * values, scale_apart, "+")
         if apart and not beside:
             grid[row + 1, 0].set_axis_off()
             grid[row + 1, 1].set_ylabel(f"{side} jaw,\nless the first")
@@ -110,20 +117,32 @@ def draw_maps(figure: SubFigure, maps: TaxelMaps, names: Sequence[str]) -> None:
         bar.set_label(f"difference in {small_unit}")
 
 
-def _draw_map(axis: Axes, values: np.ndarray, scale: ScalarMappable, form: str) -> None:
-    """A matrix with its numbers, row 1 at the bottom."""
+def _draw_map(axis: Axes, values: np.ndarray, scale: ScalarMappable, sign: str = "") -> None:
+    """A matrix with its numbers, row 1 at the bottom; ``sign`` is that of a format."""
     axis.imshow(values, cmap=scale.get_cmap(), norm=scale.norm, origin="lower")
     rows, columns = values.shape
     size, colours = float(np.clip(24 / max(rows, columns), 4.0, 8.0)), colormaps[scale.get_cmap().name]
     for (row, column), value in np.ndenumerate(values) if max(rows, columns) <= MOST_WRITTEN else ():
         if np.isfinite(value):
             style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": size, "in_layout": False}
-            words = with_minus(form.format(value)) if value else "0"
-            axis.text(column, row, words, color=ink_on(colours(float(scale.norm(value)))), **style)
+            axis.text(column, row, _written(float(value), scale, sign), color=ink_on(colours(float(scale.norm(value)))), **style)
     axis.set_xticks(_ticks(columns), [str(k + 1) for k in _ticks(columns)], fontsize=7)
     axis.set_yticks(_ticks(rows), [str(k + 1) for k in _ticks(rows)], fontsize=7)
     axis.tick_params(length=0)
     axis.spines[:].set_visible(False)
+
+
+def _written(value: float, scale: ScalarMappable, sign: str) -> str:
+    """A number of three digits; one that is small beside the largest has no more decimals than that."""
+    largest = max(abs(float(scale.norm.vmin or 0.0)), abs(float(scale.norm.vmax or 0.0)))
+    if abs(value) >= SMALL * largest:
+        digits = 2 if sign else 3
+        return with_minus(np.format_float_positional(float(f"{value:.{digits}g}"), trim="-", sign=bool(sign)))
+    if not value:
+        return "0"
+    decimals = max(0, 2 - math.floor(math.log10(largest)))
+    words = f"{value:{sign}.{decimals}f}"
+    return with_minus(words) if float(words) else words.lstrip("+-")
 
 
 def _ticks(count: int) -> list[int]:

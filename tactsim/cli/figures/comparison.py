@@ -12,6 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from tactsim.cli.figures.compared_maps import draw_maps, taxel_maps
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.results import Result
@@ -21,7 +23,7 @@ from tactsim.results.comparison import Comparison
 CURVES = (("displacement", "reaction_force"), ("displacement", "force"), ("time", "force"))
 """What is drawn over what, the first pair that every result has."""
 MOST_BARS, BARS_ABOVE_MAPS = 6, 3
-ASKED_FOR = ("reaction_force", "threshold_pressure", "threshold_force")
+ASKED_FOR = ("reaction_force", "threshold_pressure", "threshold_force", *(f"{LARGEST}{TAXEL_FORCE}_{side}" for side in JAWS))
 """Numbers that bars show first, whether they differ or not."""
 OF_THE_SOLVER = frozenset({*CONTACT_UNITS, "unknowns", "mirror_asymmetry"} - {"max_pressure"})
 """Numbers that tell how a result was computed and not what it is: bars show them only where nothing else differs."""
@@ -38,7 +40,7 @@ def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> 
     with styled():
         pair = next((pair for pair in CURVES if _have(results, pair)), None)
         maps = taxel_maps(results)
-        columns = [] if pair else _bars(comparison, MOST_BARS if maps is None else BARS_ABOVE_MAPS)
+        columns = [] if pair else _bars(comparison, maps is not None)
         width, height = 6.4, 4.2 if pair else 1.2 + (0.5 + 0.3 * len(results)) * max(1, len(columns))
         if maps is None:
             figure = upper = new_figure(width, height)
@@ -56,14 +58,14 @@ def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> 
     return figure
 
 
-def _bars(comparison: Comparison, most: int) -> list[Column]:
+def _bars(comparison: Comparison, above_maps: bool) -> list[Column]:
     """The numbers that bars show: what people ask for first, then those that differ most; what tells of the solver last."""
     arrays = (LARGEST, FROM_FIRST)
-    wanted = [one for one in comparison.columns if one.name in ASKED_FOR]
+    wanted = [c for c in comparison.columns if c.name in ASKED_FOR and not (above_maps and c.name.startswith(arrays))]
     others = [c for c in comparison.differing if not c.name.startswith(arrays) and c not in wanted]
     others.sort(key=lambda column: (column.name in OF_THE_SOLVER, -_spread(column)))
     told = [c for c in others if c.name not in OF_THE_SOLVER]
-    return [*wanted, *(told if told or wanted else others)][:most]
+    return [*wanted, *(told if told or wanted else others)][: BARS_ABOVE_MAPS if above_maps else MOST_BARS]
 
 
 def _draw_bars(figure: FigureBase, comparison: Comparison, columns: Sequence[Column]) -> None:
@@ -117,9 +119,10 @@ def _draw_curves(axis: Axes, results: Mapping[str, Result], pair: tuple[str, str
     scales = [scale_of(max(np.nanmax(np.abs(values[k])) for values in series.values()), units[pair[k]]) for k in (0, 1)]
     for number, (name, (x, y)) in enumerate(series.items()):
         dash, mark = DASHES[number % len(DASHES)], MARKS[number // len(DASHES) % len(MARKS)]
-        mark = mark or "o" if len(x) == 1 else mark  # one step is no line
+        if len(x) == 1:
+            dash, mark = "none", mark or "o"
         label = _labelled(name, results[name])
-        axis.plot(scales[0][0] * x, scales[1][0] * y, dash, marker=mark, markevery=[-1], markersize=5, label=label)
+        axis.plot(scales[0][0] * x, scales[1][0] * y, linestyle=dash, marker=mark, markevery=[-1], markersize=5, label=label)
     reached = [place for result in results.values() if (place := _threshold(result, pair)) is not None]
     if reached:
         x, y = (factor * np.array(values) for (factor, _), values in zip(scales, zip(*reached, strict=True), strict=True))
