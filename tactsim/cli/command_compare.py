@@ -22,8 +22,9 @@ Prints the numbers in which several stored results differ, a column for each res
 warnings. Of arrays, such as the forces of taxels, it gives the largest value and the largest
 difference from the first result; what differs by round-off only is the same. With --out a
 folder is written, in the place of an earlier comparison: comparison.csv and comparison.md with
-every number, comparison.png with a curve for each result. A folder that holds several results,
-such as that of tactsim run CASE1 CASE2 --out DIR, stands for all of them.
+every number, comparison.png with a curve for each result and, of grasps, a map of their taxels. A
+folder that holds several results, such as that of tactsim run CASE1 CASE2 --out DIR, stands for
+all of them.
 """
 EXAMPLES = """\
 examples:

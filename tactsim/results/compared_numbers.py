@@ -54,14 +54,14 @@ def shown_number(value: float | None) -> str:
 
 def columns_of(results: Sequence[Result]) -> list[Column]:
     """A column for every number that one of the results has, and for every array what is largest in it and in its difference."""
-    found: dict[str, Quantity] = {}
+    first_of: dict[str, Quantity] = {}
     for result in results:
         for name, quantity in result.quantities.items():
             if quantity.value is not None:
-                found.setdefault(name, quantity)
+                first_of.setdefault(name, quantity)
     sizes = _sizes(results)
     columns: list[Column] = []
-    for name, first in found.items():
+    for name, first in first_of.items():
         same_unit = [one if (one := result.quantities.get(name)) and one.unit == first.unit else None for result in results]
         if isinstance(first.value, int | float):
             values = [float(one.value) if one and isinstance(one.value, int | float) else None for one in same_unit]
@@ -107,7 +107,7 @@ def _at_the_same(first: Quantity, other: Quantity) -> bool:
             continue
         if one.unit == "" and one.values != beside.values:
             return False
-        if one.unit != "" and not np.allclose(one.values, beside.values, rtol=CLOSE, atol=0.0):  # type: ignore[arg-type]
+        if one.unit != "" and not np.allclose(one.values, beside.values, rtol=CLOSE, atol=0.0):
             return False
     return True
 

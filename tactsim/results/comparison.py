@@ -68,7 +68,7 @@ class Comparison:
         return text.getvalue()
 
     def markdown_text(self) -> str:
-        """A row for each number, a column for each result, five digits; below them every warning with the results that have it."""
+        """A row for each number, a column for each result, five digits; then every warning with the results that have it."""
         lines = [f"| {markdown_row(self.names)}", f"|---{'|---:' * len(self.names)}|", markdown_row(["status", *self.statuses])]
         lines.append(markdown_row(["warnings", *self.counted_warnings]))
         lines += [markdown_row([key, *values]) for key, values in self.inputs.items()]

@@ -6,6 +6,7 @@ import itertools
 import textwrap
 from collections.abc import Mapping, Sequence
 from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -43,16 +44,18 @@ def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> 
         columns = [] if pair else _bars(comparison, maps is not None)
         width, height = 6.4, 4.2 if pair else 1.2 + (0.5 + 0.3 * len(results)) * max(1, len(columns))
         if maps is None:
-            figure = upper = new_figure(width, height)
+            figure = new_figure(width, height)
+            parts: Any = [figure]
         else:
             height = 3.4 if pair else height
             figure = new_figure(max(width, maps.size[0]), height + maps.size[1])
-            upper, lower = figure.subfigures(2, 1, height_ratios=(height, maps.size[1]))
-            draw_maps(lower, maps, [_labelled(name, result) for name, result in results.items()])
+            parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(height, maps.size[1]))[:, 0]
         if pair is not None:
-            _draw_curves(upper.subplots(), results, pair)
+            _draw_curves(parts[0].subplots(), results, pair)
         else:
-            _draw_bars(upper, comparison, columns)
+            _draw_bars(parts[0], comparison, columns)
+        if maps is not None:
+            draw_maps(parts[1], maps, [_labelled(name, result) for name, result in results.items()])
         first, *rest = _title(comparison)
         entitle(figure, first, " ".join(rest))
     return figure
@@ -64,8 +67,8 @@ def _bars(comparison: Comparison, above_maps: bool) -> list[Column]:
     wanted = [c for c in comparison.columns if c.name in ASKED_FOR and not (above_maps and c.name.startswith(arrays))]
     others = [c for c in comparison.differing if not c.name.startswith(arrays) and c not in wanted]
     others.sort(key=lambda column: (column.name in OF_THE_SOLVER, -_spread(column)))
-    told = [c for c in others if c.name not in OF_THE_SOLVER]
-    return [*wanted, *(told if told or wanted else others)][: BARS_ABOVE_MAPS if above_maps else MOST_BARS]
+    no_solver = [c for c in others if c.name not in OF_THE_SOLVER]
+    return [*wanted, *(no_solver if no_solver or wanted else others)][: BARS_ABOVE_MAPS if above_maps else MOST_BARS]
 
 
 def _draw_bars(figure: FigureBase, comparison: Comparison, columns: Sequence[Column]) -> None:
