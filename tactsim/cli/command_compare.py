@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.errors import InputError, UnknownName
+from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -18,10 +18,13 @@ if TYPE_CHECKING:
 NAME = "compare"
 SUMMARY = "put several stored results into one table and one figure"
 DESCRIPTION = """\
-Prints the numbers in which several stored results differ, a column for each result. With --out a
-folder is written: comparison.csv and comparison.md with every number, comparison.png with a curve
-for each result. A folder that holds several results, such as that of tactsim run CASE1 CASE2
---out DIR, stands for all of them.
+Prints the numbers in which several stored results differ, a column for each result, and their
+warnings. Of arrays, such as the forces of taxels, it gives the largest value and the largest
+difference from the first result; what differs by round-off only is the same. With --out a
+folder is written, in the place of an earlier comparison: comparison.csv and comparison.md with
+every number, comparison.png with a curve for each result and, of grasps, a map of their taxels. A
+folder that holds several results, such as that of tactsim run CASE1 CASE2 --out DIR, stands for
+all of them.
 """
 EXAMPLES = """\
 examples:
@@ -50,15 +53,26 @@ def run(arguments: argparse.Namespace) -> int:
     """
     from tactsim.results import read_result
 
+    if arguments.out is not None:
+        refuse_result(arguments.out)
     folders = [folder for place in arguments.results for folder in _folders(place)]
     stored = {name: read_result(folder, fields=False) for name, folder in _named(folders).items()}
     if len(stored) < 2:
         raise InputError("one result has nothing to be compared with; name two or more, or a folder that holds several")
     report({name: one.complete for name, one in stored.items()}, arguments.out, everything=arguments.all)
-    for name, one in stored.items():
-        for file in one.changed:
-            console.out(f"warning: {one_line(name)}: {file} was changed since tactsim wrote it")
     return 0
+
+
+def refuse_result(out: Path) -> None:
+    """Refuses the folder of a result as that of a comparison, which replaces an earlier one without a word.
+
+    Raises
+    ------
+    StorageError
+        If there is a result.
+    """
+    if (out / "result.json").exists():
+        raise StorageError(f"{one_line(out)} holds a result, which no comparison replaces; choose another folder")
 
 
 def report(results: Mapping[str, Result], out: Path | None, *, everything: bool = False, quiet: bool = False) -> None:
@@ -80,10 +94,10 @@ def report(results: Mapping[str, Result], out: Path | None, *, everything: bool 
 
 
 def _print(comparison: Comparison, everything: bool) -> None:
-    """Print a row for every input that differs, and for every number, or for those that differ."""
-    from tactsim.results.comparison import shown_number
+    """Print a row for every input that differs, and for every number, or for those that differ; then every warning once."""
+    from tactsim.results.compared_numbers import FROM_FIRST, shown_number
 
-    width = max(6, *map(len, comparison.inputs), *(len(column.head) for column in comparison.columns))
+    width = max(8, *map(len, comparison.inputs), *(len(column.head) for column in comparison.columns))
     names = [one_line(name, LONGEST_NAME) for name in comparison.names]
     given = [[one_line(value, LONGEST_NAME) for value in values] for values in comparison.inputs.values()]
     cells = [max(10, len(name), *(len(row[k]) for row in given)) for k, name in enumerate(names)]
@@ -91,11 +105,19 @@ def _print(comparison: Comparison, everything: bool) -> None:
     console.out(
         "  ".join([f"{'status':<{width}}", *(f"{s:>{cell}}" for s, cell in zip(comparison.statuses, cells, strict=True))])
     )
+    if comparison.warned:
+        counts = zip(comparison.counted_warnings, cells, strict=True)
+        console.out("  ".join([f"{'warnings':<{width}}", *(f"{count:>{cell}}" for count, cell in counts)]))
     for key, row in zip(comparison.inputs, given, strict=True):
         console.out("  ".join([f"{key:<{width}}", *(f"{value:>{cell}}" for value, cell in zip(row, cells, strict=True))]))
-    for column in comparison.columns if everything else comparison.differing:
+    columns = comparison.columns if everything else comparison.differing
+    for column in columns:
         numbers = (shown_number(value) or "-" for value in column.values)
         console.out("  ".join([f"{column.head:<{width}}", *(f"{n:>{cell}}" for n, cell in zip(numbers, cells, strict=True))]))
+    if any(column.name.startswith(FROM_FIRST) for column in columns):
+        console.out("\n".join(comparison.notes))
+    for text, warned in comparison.warned.items():
+        console.out(f"warning: {', '.join(one_line(name, LONGEST_NAME) for name in warned)}: {one_line(text)}")
 
 
 def _unit_of(experiment: Mapping[str, Any], path: tuple[str | int, ...]) -> str:

@@ -34,7 +34,8 @@ it with the ending .earlier. A folder given by --out is replaced only with --for
 with files that tactsim did not write is never replaced.
 
 Several cases are run one after the other, each into a folder of its name below --out (default:
-results), and then put into one table and one figure: see tactsim compare.
+results), and then put into one table and one figure, in the folder "comparison" beside them: see
+tactsim compare. With --out none of these folders is replaced without --force either.
 
 On a terminal every accepted step is reported as it happens; elsewhere only the final report
 is written, unless --progress asks for more. Ctrl+C stops the computation and writes what was
@@ -83,13 +84,15 @@ def run(arguments: argparse.Namespace) -> int:
     Raises
     ------
     InputError
-        If two of several cases have the same name, so that their results would.
+        If two of several cases have the same name, or one that of the comparison, so that their results would.
     """
     if len(arguments.cases) == 1:
         return _run(arguments.cases[0], arguments.out, arguments)
     names = [path.stem for path in arguments.cases]
     if repeated := [name for name in names if names.count(name) > 1]:
         raise InputError(f"two cases are called {one_line(repeated[0])}; their results would have one folder")
+    if COMPARISON in names:
+        raise InputError(f"a case is called {COMPARISON}, as is the folder of the table of several cases; rename its file")
     root, codes = arguments.out or Path("results"), []
     _refuse_early(arguments, [root / name for name in (*names, COMPARISON)])
     for number, path in enumerate(arguments.cases):
@@ -113,14 +116,20 @@ def _refuse_early(arguments: argparse.Namespace, places: list[Path]) -> None:
         What the case, or its place, would be refused with.
     """
     from tactsim.case.loading import read_document, validated_case
+    from tactsim.cli.command_compare import refuse_result
     from tactsim.outside.library_warnings import collected_warnings
     from tactsim.results.folder import check_replaceable
 
     for path in arguments.cases:
         with collected_warnings():  # its turn reports them
             validated_case(*read_document(path, arguments.set))
-    for place in places:
-        check_replaceable(place, replace=True)
+    check_replaceable(places[0], _may_replace(arguments), *places[1:])
+    refuse_result(places[-1])
+
+
+def _may_replace(arguments: argparse.Namespace) -> bool:
+    """Whether earlier results of tactsim may give way: those of the default folder, or with --force."""
+    return arguments.force or arguments.out is None
 
 
 def _compare(folders: list[Path], place: Path, arguments: argparse.Namespace) -> None:
@@ -149,7 +158,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
             case = validated_case(document, place)
             listed = check_inputs(case, document, place)
         directory = out or Path("results") / path.stem
-        with claimed(directory, replace=arguments.force or arguments.out is None or len(arguments.cases) > 1) as folder:
+        with claimed(directory, replace=_may_replace(arguments)) as folder:
             progress = _progress(case, arguments)
             if progress is not None:
                 for doubt in case.experiment.doubts():

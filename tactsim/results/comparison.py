@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import csv
 import io
-import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-from tactsim.outside.text import markdown_row
+from tactsim.outside.text import markdown_row, one_line
+from tactsim.results.compared_numbers import FROM_FIRST, Column, columns_of, shown_number
 from tactsim.results.result import Result
 from tactsim.units import compact_unit, conversion
 
@@ -20,70 +20,72 @@ NameOf = Callable[[Mapping[str, Any]], str]
 
 
 @dataclass(frozen=True)
-class Column:
-    """A number of several results in the unit that suits them; None where a result does not have it."""
-
-    name: str
-    unit: str
-    description: str
-    values: tuple[float | None, ...]
-
-    @property
-    def head(self) -> str:
-        """Name and unit."""
-        return f"{self.name} [{self.unit}]" if self.unit not in ("", "1") else self.name
-
-
-@dataclass(frozen=True)
 class Comparison:
-    """Names, status and numbers of several results."""
+    """Names, status, warnings and numbers of several results."""
 
     names: tuple[str, ...]
     statuses: tuple[str, ...]
     columns: tuple[Column, ...]
     inputs: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     """Key of the case with its unit -> its value in each result, where they differ."""
+    warnings: tuple[tuple[str, ...], ...] = ()
+    """Those of each result."""
 
     @property
     def differing(self) -> tuple[Column, ...]:
         """The columns in which the results are not all the same."""
-        return tuple(column for column in self.columns if len(set(map(shown_number, column.values))) > 1)
+        return tuple(column for column in self.columns if column.differs)
+
+    @property
+    def counted_warnings(self) -> tuple[str, ...]:
+        """How many warnings each result has."""
+        return tuple(str(len(dict.fromkeys(one))) for one in self.warnings or ((),) * len(self.names))
+
+    @property
+    def warned(self) -> dict[str, tuple[str, ...]]:
+        """Every warning -> the names of the results that have it."""
+        texts = dict.fromkeys(text for one in self.warnings for text in one)
+        return {text: tuple(n for n, one in zip(self.names, self.warnings, strict=True) if text in one) for text in texts}
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What must be known to read the names of the numbers."""
+        if not any(column.name.startswith(FROM_FIRST) for column in self.columns):
+            return ()
+        return (f"The largest difference of an array is that from {one_line(self.names[0])}; signs do not count.",)
 
     def csv_text(self) -> str:
         """A row for each result; what it does not have is empty."""
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(["result", "status", *self.inputs, *(column.head for column in self.columns)])
+        writer.writerow(["result", "status", "warnings", *self.inputs, *(column.head for column in self.columns)])
         for row, (name, status) in enumerate(zip(self.names, self.statuses, strict=True)):
             given = [values[row] for values in self.inputs.values()]
             writer.writerow(
-                [name, status, *given, *("" if (v := column.values[row]) is None else repr(v) for column in self.columns)]
+                [name, status, self.counted_warnings[row], *given]
+                + ["" if (v := column.values[row]) is None else repr(v) for column in self.columns]
             )
         return text.getvalue()
 
     def markdown_text(self) -> str:
-        """A row for each number, a column for each result, five digits."""
+        """A row for each number, a column for each result, five digits; then every warning with the results that have it."""
         lines = [f"| {markdown_row(self.names)}", f"|---{'|---:' * len(self.names)}|", markdown_row(["status", *self.statuses])]
+        lines.append(markdown_row(["warnings", *self.counted_warnings]))
         lines += [markdown_row([key, *values]) for key, values in self.inputs.items()]
         lines += [markdown_row([column.head, *map(shown_number, column.values)]) for column in self.columns]
+        lines += [line for note in self.notes for line in ("", note)]
+        if self.warned:
+            lines += ["", "Warnings:", ""]
+            lines += [f"- {', '.join(map(one_line, names))}: {one_line(text)}" for text, names in self.warned.items()]
         return "\n".join(lines) + "\n"
 
 
-def shown_number(value: float | None) -> str:
-    """Five digits, empty for None."""
-    return "" if value is None else f"{value:.5g}"
-
-
 def compared(results: Mapping[str, Result], unit_of: UnitOf, name_of: NameOf = lambda part: "") -> Comparison:
-    """The numbers of results by their names, in the order in which they come."""
-    names: dict[str, tuple[str, str]] = {}
-    for result in results.values():
-        for name, quantity in result.quantities.items():
-            if isinstance(quantity.value, int | float):
-                names.setdefault(name, (quantity.unit, quantity.description))
-    columns = [_column(name, *about, results) for name, about in names.items()]
+    """The numbers and warnings of results by their names, in the order in which they come."""
+    given = _differing_inputs(results, unit_of, name_of)
     statuses = tuple(str(result.status) for result in results.values())
-    return Comparison(tuple(results), statuses, tuple(columns), _differing_inputs(results, unit_of, name_of))
+    warnings = tuple(result.warnings for result in results.values())
+    return Comparison(tuple(results), statuses, tuple(columns_of(list(results.values()))), given, warnings)
 
 
 def _differing_inputs(results: Mapping[str, Result], unit_of: UnitOf, name_of: NameOf) -> dict[str, tuple[str, ...]]:
@@ -130,15 +132,3 @@ def _leaves(value: Any, path: tuple[str | int, ...], name_of: NameOf) -> Iterato
             yield from _leaves(item, (*path, key), name_of)
     else:
         yield path, value
-
-
-def _column(name: str, unit: str, description: str, results: Mapping[str, Result]) -> Column:
-    quantities = [result.quantities.get(name) for result in results.values()]
-    values = [
-        float(one.value) if one is not None and one.unit == unit and isinstance(one.value, int | float) else None
-        for one in quantities
-    ]
-    sizes = [abs(value) for value in values if value is not None and math.isfinite(value)]
-    readable = compact_unit(max(sizes, default=0.0), unit)
-    factor = conversion(unit, readable)
-    return Column(name, readable, description, tuple(None if value is None else value * factor for value in values))

@@ -14,7 +14,7 @@ import re
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager, suppress
 from dataclasses import dataclass
-from pathlib import Path
+from pathlib import Path, PurePosixPath
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
@@ -196,25 +196,40 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
             folder.discard()
 
 
-def check_replaceable(path: Path, replace: bool) -> None:
-    """Refuses a place that is taken by something which must not be replaced.
+def check_replaceable(path: Path, replace: bool, *others: Path) -> None:
+    """Refuses places that are taken by something which must not be replaced.
 
     Raises
     ------
     StorageError
-        Naming what is in the way and how to replace it.
+        Naming every place with what is in the way, and how to replace it.
     """
-    if not os.path.lexists(path) or (path.is_dir() and not path.is_symlink() and not any(path.iterdir())):
-        return
-    if path.is_symlink() or not path.is_dir():
-        raise StorageError(f"the output folder {one_line(path)} exists and is not a folder; choose another place")
-    if strangers := _foreign(path):
-        more = f" and {len(strangers) - 1} more" if len(strangers) > 1 else ""
-        advice = "move that away or choose another folder"
-        raise StorageError(f"the output folder {one_line(path)} holds {strangers[0]}{more}; {advice}")
-    if not replace:
+    taken = [place for place in (path, *others) if _is_taken(place)]
+    refusals = {place: reason for place in taken if (reason := _why_never(place))}
+    existing = [] if replace else [one_line(place) for place in taken if place not in refusals]
+    words = list(refusals.values())
+    if len(existing) == 1:
         how = "use --force (in Python: force=True) to replace it, or choose another folder"
-        raise StorageError(f"the output folder {one_line(path)} exists; {how}")
+        words.append(f"the output folder {existing[0]} exists; {how}")
+    elif existing:
+        named = f"{', '.join(existing[:-1])} and {existing[-1]}"
+        words.append(f"the output folders {named} exist; use --force to replace them, or choose another folder")
+    if words:
+        raise StorageError("; ".join(words))
+
+
+def _is_taken(path: Path) -> bool:
+    return os.path.lexists(path) and (path.is_symlink() or not path.is_dir() or any(path.iterdir()))
+
+
+def _why_never(path: Path) -> str:
+    """Why what stands at a place is never replaced, in words; empty if it may be."""
+    if path.is_symlink() or not path.is_dir():
+        return f"the output folder {one_line(path)} exists and is not a folder; choose another place"
+    strangers = _foreign(path)
+    more = f" and {len(strangers) - 1} more" if len(strangers) > 1 else ""
+    advice = "move that away or choose another folder"
+    return f"the output folder {one_line(path)} holds {strangers[0]}{more}; {advice}" if strangers else ""
 
 
 def _foreign(path: Path) -> list[str]:
@@ -241,6 +256,13 @@ def _remove_own(path: Path) -> None:
 
 
 def _refuse_foreign_names(path: Path) -> None:
-    strangers = [name for name in names_in(path) if name != MANIFEST and not _OWN_NAME.fullmatch(name)]
+    """Refuses what neither the manifest of the folder names nor, without one, an earlier version wrote.
+
+    Contents are not read again: what is replaced was held against its manifest a moment before.
+    """
+    manifest = read_manifest(path)
+    written = set(manifest.files) if manifest is not None else set()
+    written |= {str(above) for name in written for above in PurePosixPath(name).parents}  # a removal cut short leaves them empty
+    strangers = sorted(name for name in names_in(path) - written - {MANIFEST} if not _OWN_NAME.fullmatch(name))
     if strangers:
         raise StorageError(f"{one_line(path)} holds {one_line(strangers[0])!r}, which tactsim did not write; move that away")

@@ -1,22 +1,33 @@
-"""Several results in one figure: a curve for each over what grows during the run, or a bar for each."""
+"""Several results in one figure: a curve for each over what grows during the run, or a bar for each; and maps of taxels."""
 
 from __future__ import annotations
 
 import itertools
 import textwrap
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
+from matplotlib.figure import Figure, FigureBase
 
+from tactsim.cli.figures.compared_maps import draw_maps, taxel_maps
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
 from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
 from tactsim.results import Result
+from tactsim.results.compared_numbers import FROM_FIRST, LARGEST, Column
 from tactsim.results.comparison import Comparison
 
 CURVES = (("displacement", "reaction_force"), ("displacement", "force"), ("time", "force"))
 """What is drawn over what, the first pair that every result has."""
-MOST_BARS = 6
+MOST_BARS, BARS_ABOVE_MAPS = 6, 3
+ASKED_FOR = ("reaction_force", "threshold_pressure", "threshold_force", *(f"{LARGEST}{TAXEL_FORCE}_{side}" for side in JAWS))
+"""Numbers that bars show first, whether they differ or not."""
+OF_THE_SOLVER = frozenset({*CONTACT_UNITS, "unknowns", "mirror_asymmetry"} - {"max_pressure"})
+"""Numbers that tell how a result was computed and not what it is: bars show them only where nothing else differs."""
 DASHES = ("-", "--", "-.", ":")
 MARKS = ("", "o", "s", "^", "D", "v")
 """Dashes of the curves, one after the other, and marks of their ends, another with every round: told apart without colour.
@@ -26,24 +37,47 @@ MOST_NAMED, TITLE_WIDTH = 4, 66
 
 
 def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> Figure:
-    """A curve for each result, or bars of the numbers in which they differ most where there is no history in common."""
+    """A curve for each result, or bars of numbers where there is no history in common; below them what taxels read."""
     with styled():
-        pair = next((pair for pair in CURVES if all(_has(result, pair) for result in results.values())), None)
-        if pair is not None:
-            figure = new_figure(6.4, 4.2)
-            _draw_curves(figure.subplots(), results, pair)
+        pair = next((pair for pair in CURVES if _have(results, pair)), None)
+        maps = taxel_maps(results)
+        columns = [] if pair else _bars(comparison, maps is not None)
+        width, height = 6.4, 4.2 if pair else 1.2 + (0.5 + 0.3 * len(results)) * max(1, len(columns))
+        if maps is None:
+            figure = new_figure(width, height)
+            parts: Any = [figure]
         else:
-            columns = sorted(comparison.differing, key=_spread, reverse=True)[:MOST_BARS]
-            figure = new_figure(6.4, 1.2 + (0.5 + 0.3 * len(results)) * max(1, len(columns)))
-            for axis, column in zip(figure.subplots(max(1, len(columns)), squeeze=False)[:, 0], columns, strict=False):
-                heights = [np.nan if value is None else value for value in column.values]
-                axis.barh(comparison.names, heights, height=0.6)
-                axis.invert_yaxis()
-                axis.set_xlabel(column.head)
-                despined(axis)
+            height = 3.4 if pair else height
+            figure = new_figure(max(width, maps.size[0]), height + maps.size[1])
+            parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(height, maps.size[1]))[:, 0]
+        if pair is not None:
+            _draw_curves(parts[0].subplots(), results, pair)
+        else:
+            _draw_bars(parts[0], comparison, columns)
+        if maps is not None:
+            draw_maps(parts[1], maps, [_labelled(name, result) for name, result in results.items()])
         first, *rest = _title(comparison)
         entitle(figure, first, " ".join(rest))
     return figure
+
+
+def _bars(comparison: Comparison, above_maps: bool) -> list[Column]:
+    """The numbers that bars show: what people ask for first, then those that differ most; what tells of the solver last."""
+    arrays = (LARGEST, FROM_FIRST)
+    wanted = [c for c in comparison.columns if c.name in ASKED_FOR and not (above_maps and c.name.startswith(arrays))]
+    others = [c for c in comparison.differing if not c.name.startswith(arrays) and c not in wanted]
+    others.sort(key=lambda column: (column.name in OF_THE_SOLVER, -_spread(column)))
+    no_solver = [c for c in others if c.name not in OF_THE_SOLVER]
+    return [*wanted, *(no_solver if no_solver or wanted else others)][: BARS_ABOVE_MAPS if above_maps else MOST_BARS]
+
+
+def _draw_bars(figure: FigureBase, comparison: Comparison, columns: Sequence[Column]) -> None:
+    for axis, column in zip(figure.subplots(max(1, len(columns)), squeeze=False)[:, 0], columns, strict=False):
+        heights = [np.nan if value is None else value for value in column.values]
+        axis.barh(comparison.names, heights, height=0.6)
+        axis.invert_yaxis()
+        axis.set_xlabel(column.head)
+        despined(axis)
 
 
 def comparison_png(results: Mapping[str, Result], comparison: Comparison) -> bytes:
@@ -69,8 +103,17 @@ def _shared(first: list[str], second: list[str]) -> list[str]:
     return [one for one, _ in itertools.takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False))]
 
 
+def _have(results: Mapping[str, Result], pair: tuple[str, str]) -> bool:
+    """Whether every result has both values at some step, and one of them a curve."""
+    return all(map(partial(_has, pair=pair), results.values())) and any(len(result.steps) > 1 for result in results.values())
+
+
 def _has(result: Result, pair: tuple[str, str]) -> bool:
-    return len(result.steps) > 1 and all(name in result.units and np.isfinite(result.history_values(name)).any() for name in pair)
+    return all(name in result.units and np.isfinite(result.history_values(name)).any() for name in pair)
+
+
+def _labelled(name: str, result: Result) -> str:
+    return name if result.status == "converged" else f"{name} ({result.status})"
 
 
 def _draw_curves(axis: Axes, results: Mapping[str, Result], pair: tuple[str, str]) -> None:
@@ -78,9 +121,11 @@ def _draw_curves(axis: Axes, results: Mapping[str, Result], pair: tuple[str, str
     units = next(iter(results.values())).units
     scales = [scale_of(max(np.nanmax(np.abs(values[k])) for values in series.values()), units[pair[k]]) for k in (0, 1)]
     for number, (name, (x, y)) in enumerate(series.items()):
-        label = name if results[name].status == "converged" else f"{name} ({results[name].status})"
         dash, mark = DASHES[number % len(DASHES)], MARKS[number // len(DASHES) % len(MARKS)]
-        axis.plot(scales[0][0] * x, scales[1][0] * y, dash, marker=mark, markevery=[-1], markersize=5, label=label)
+        if len(x) == 1:
+            dash, mark = "none", mark or "o"
+        label = _labelled(name, results[name])
+        axis.plot(scales[0][0] * x, scales[1][0] * y, linestyle=dash, marker=mark, markevery=[-1], markersize=5, label=label)
     reached = [place for result in results.values() if (place := _threshold(result, pair)) is not None]
     if reached:
         x, y = (factor * np.array(values) for (factor, _), values in zip(scales, zip(*reached, strict=True), strict=True))
@@ -98,6 +143,6 @@ def _threshold(result: Result, pair: tuple[str, str]) -> tuple[float, float] | N
     return None if x is None or y is None else (x, y)
 
 
-def _spread(column: object) -> float:
-    values = np.array([value for value in column.values if value is not None and np.isfinite(value)])  # type: ignore[attr-defined]
+def _spread(column: Column) -> float:
+    values = np.array([value for value in column.values if value is not None and np.isfinite(value)])
     return float(np.ptp(values) / np.abs(values).max()) if values.size > 1 and np.abs(values).max() > 0 else 0.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import os
 from pathlib import Path
 
 import pytest
@@ -11,6 +12,7 @@ from tactsim.cli import main
 from tactsim.cli.command_compare import _name_of, _unit_of, report
 from tactsim.cli.figures.comparison import comparison_figure
 from tactsim.errors import InputError
+from tactsim.experiments.annulus.closed_form import ClosedForm
 from tactsim.materials.library import LIBRARY
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.comparison import compared
@@ -47,7 +49,46 @@ def test_several_cases_become_one_table_and_one_figure(cases: list[str], capsys:
     assert table.startswith("| | small | large |")
     assert "| outer_radius [mm] | 3 | 4 |" in table
     assert [row["outer_radius [mm]"] for row in rows] == ["3", "4"]
-    assert main(["run", *cases, "--out", "designs"]) == 0, "results of tactsim give way"
+
+
+def test_several_cases_are_run_again_and_again_in_the_default_folder(cases: list[str]) -> None:
+    for force in ("0.1 N", "0.2 N", "0.3 N"):
+        assert main(["run", *cases, "--quiet", "--set", f"experiment.loading.pieces.0.to={force}"]) == 0
+        assert sorted(os.listdir("results")) == ["comparison", "large", "small"]
+        assert f"largest_force [mN] | {1e3 * float(force[:3]):g} |" in Path("results/comparison/comparison.md").read_text()
+        assert main(["compare", "results", "--out", "table"]) == 0
+    assert sorted(os.listdir(".")) == ["large.yaml", "results", "small.yaml", "table"]
+
+
+def test_a_named_folder_of_several_cases_needs_force_as_that_of_one_does(
+    cases: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert main(["run", *cases, "--out", "mine", "--quiet"]) == 0
+    with monkeypatch.context() as patch:
+        patch.setattr(ClosedForm, "begin", lambda self: pytest.fail("computed before the folders were checked"))
+        assert main(["run", *cases, "--out", "mine", "--quiet"]) == 5
+        told = capsys.readouterr().err
+        assert "the output folders mine/small, mine/large and mine/comparison exist; use --force" in told
+        (Path("mine/large") / "notes.txt").write_text("mine")
+        assert main(["run", *cases, "--out", "mine", "--quiet"]) == 5
+        told = capsys.readouterr().err
+        assert "mine/large holds 'notes.txt'" in told
+        assert "mine/small and mine/comparison exist" in told
+    (Path("mine/large") / "notes.txt").unlink()
+    for _ in range(3):
+        assert main(["run", *cases, "--out", "mine", "--quiet", "--force"]) == 0
+    assert sorted(os.listdir("mine")) == ["comparison", "large", "small"]
+
+
+def test_no_comparison_replaces_a_result(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", *cases, "--quiet"]) == 0
+    assert main(["compare", "results", "--out", "results/small"]) == 5
+    assert "results/small holds a result" in capsys.readouterr().err
+    Path("comparison.yaml").write_text(Path(cases[0]).read_text())
+    assert main(["run", *cases, "comparison.yaml", "--quiet"]) == 2
+    assert main(["run", "comparison.yaml", "--quiet"]) == 0
+    assert main(["run", *cases, "--quiet"]) == 5
+    assert Path("results/comparison/result.json").is_file()
 
 
 def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
@@ -57,7 +98,8 @@ def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: p
     assert main(["compare", "designs"]) == 0
     shown = capsys.readouterr().out.splitlines()
     assert shown[0].split() == ["large", "small"]
-    assert shown[2].split() == ["outer_radius", "[mm]", "4", "3"], "what differs between the cases stands first"
+    assert shown[2].split() == ["warnings", "1", "1"]
+    assert shown[3].split() == ["outer_radius", "[mm]", "4", "3"], "what differs between the cases stands first"
     assert not any(line.startswith("points") for line in shown)
     assert not any(line.startswith("largest_force ") for line in shown), "the force is that of both"
     assert main(["compare", "designs/small", "designs/large", "--all", "--out", "table"]) == 0
@@ -117,6 +159,106 @@ def test_curves_are_told_apart_without_colour_and_the_title_says_what_differs() 
     assert lines[-1].get_label() == "threshold"
     assert len(lines[-1].get_xdata()) == 2
     assert figure.get_suptitle() == "13 results that differ in tissue, mesh.size"
+
+
+def grasped(steps: int, forces: list[list[float]], *warnings: str, solver: float = 1.0) -> Result:
+    """A made-up grasp whose jaws read the same."""
+    quantities = {
+        "reaction_force": Quantity(3.0, "N", ""),
+        "gap_force_upper": Quantity(0.1, "N", ""),
+        "max_penetration": Quantity(1e-6 * solver, "m", ""),
+        "mirror_asymmetry": Quantity(1e-15 * solver, "1", ""),
+        "base_force": Quantity(2e-17 * solver, "N", ""),
+        "unknowns": Quantity(int(100 * solver), "1", ""),
+    }
+    for side in ("upper", "lower"):
+        quantities[f"taxel_force_{side}"] = Quantity(forces, "N", "force on each taxel; [row][column]")
+    times = [(k + 1) / steps for k in range(steps)]
+    quantities["time_history"] = Quantity(times, "s", "time [time]")
+    quantities["force_history"] = Quantity([3.0 * time for time in times], "N", "force [time]")
+    records = tuple(
+        StepRecord(k, 1, 0.0, {"displacement": 1e-3 * time, "reaction_force": 3 * time}) for k, time in enumerate(times)
+    )
+    units = {"displacement": "m", "reaction_force": "N"}
+    return Result("made_up", Status.CONVERGED, "", quantities, warnings=warnings, steps=records, units=units)
+
+
+def heads_and_texts(results: dict[str, Result]) -> tuple[list[str], list[str]]:
+    """Labels of the axes of the figure, and what is written in them."""
+    figure = comparison_figure(results, compared(results, lambda experiment, path: ""))
+    heads = [text for axis in figure.axes for text in (axis.get_xlabel(), axis.get_ylabel(), axis.get_title()) if text]
+    return heads, [text.get_text() for axis in figure.axes for text in axis.texts]
+
+
+def test_two_grasps_show_their_forces_and_not_their_solver() -> None:
+    """Bars of what tells of the solver were all that was shown if one of two grasps had a single step."""
+    first = [[0.3, 0.2], [0.2, 0.1]]
+    results = {"one": grasped(1, first), "other": grasped(3, [[0.35, 0.2], [0.2, 0.1 + 1e-16]], solver=9.0)}
+    heads, texts = heads_and_texts(results)
+    assert heads[:2] == ["displacement in mm", "reaction force in N"]
+    assert {"one", "other", "second less first", "upper jaw", "lower jaw", "difference in mN"} <= set(heads)
+    assert texts.count("350") == 2
+    assert texts.count("+50") == 2
+    assert texts.count("0") == 6, "round-off is no difference"
+    heads, texts = heads_and_texts({"one": grasped(1, first), "other": grasped(1, first, solver=9.0)})
+    assert heads[0] == "reaction_force [N]"
+    assert not any(name in head for head in heads for name in ("max_penetration", "unknowns", "mirror_asymmetry", "base_force"))
+    heads, _ = heads_and_texts({name: grasped(1, first) for name in "abcdef"})
+    assert heads == ["reaction_force [N]", "largest taxel_force_upper [mN]", "largest taxel_force_lower [mN]"]
+    heads, _ = heads_and_texts({"a": grasped(1, first), "b": grasped(1, [[0.1]])})
+    assert "second less first" not in heads, "of other matrices no difference is told"
+    heads, _ = heads_and_texts({name: grasped(2, [[force]]) for name, force in (("a", 1.0), ("b", 2.0), ("c", 2.5))})
+    assert "upper jaw,\nless the first" in heads
+
+
+def test_arrays_are_compared_by_their_largest_and_round_off_is_no_difference() -> None:
+    results = {
+        "one": grasped(2, [[0.3, -0.4]]),
+        "other": grasped(2, [[0.35, -0.4 - 1e-16]], solver=1.2),
+        "third": grasped(3, [[0.3]]),
+    }
+    comparison = compared(results, lambda experiment, path: "")
+    columns = {column.name: column for column in comparison.columns}
+    assert columns["largest taxel_force_upper"].values == pytest.approx((400, 400, 300))
+    assert columns["largest difference of taxel_force_upper"].values == (None, pytest.approx(50), None)
+    assert columns["largest difference of force_history"].values == (None, 0.0, None), (
+        "other times are not held against each other"
+    )
+    differing = {column.name for column in comparison.differing}
+    assert {"max_penetration", "unknowns", "largest difference of taxel_force_upper"} <= differing
+    assert not {"base_force", "mirror_asymmetry", "largest difference of force_history"} & differing
+    assert "largest difference of taxel_force_upper [mN] |  | 50 |  |" in comparison.markdown_text()
+    assert "The largest difference of an array is that from one" in comparison.markdown_text()
+
+
+def test_every_warning_is_told_once_with_the_results_that_have_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    results = {
+        "one": grasped(1, [[1.0]], "too coarse"),
+        "other": grasped(1, [[1.0]], "too coarse", "an\nedge"),
+        "good": grasped(1, [[1.0]]),
+    }
+    report(results, tmp_path / "out")
+    shown = capsys.readouterr().out.splitlines()
+    assert [line for line in shown if line.startswith("warning: ")] == [
+        "warning: one, other: too coarse",
+        "warning: other: an\\nedge",
+    ]
+    assert ["warnings", "1", "2", "0"] in [line.split() for line in shown]
+    table = (tmp_path / "out" / "comparison.md").read_text()
+    assert "| warnings | 1 | 2 | 0 |" in table
+    assert table.endswith("\nWarnings:\n\n- one, other: too coarse\n- other: an\\nedge\n")
+    rows = list(csv.DictReader((tmp_path / "out" / "comparison.csv").read_text().splitlines()))
+    assert [row["warnings"] for row in rows] == ["1", "2", "0"]
+
+
+def test_a_changed_file_of_a_result_is_a_warning_of_the_comparison(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", *cases, "--quiet"]) == 0
+    place = Path("results/small/result.json")
+    place.write_text(place.read_text() + " ")
+    assert main(["compare", "results", "--out", "table"]) == 0
+    line = "small: result.json was changed since tactsim wrote it"
+    assert f"warning: {line}" in capsys.readouterr().out
+    assert f"- {line}" in Path("table/comparison.md").read_text()
 
 
 def test_numbers_of_other_kinds_leave_gaps() -> None:

@@ -11,6 +11,7 @@ import pytest
 
 from tactsim.errors import StorageError
 from tactsim.results.folder import claimed
+from tactsim.results.writing import write_files
 from tactsim.storage.own_files import read_manifest
 
 
@@ -151,6 +152,30 @@ def test_a_parent_removed_during_the_run_is_made_again(tmp_path: Path) -> None:
         (folder.start() / "result.json").write_text("new", encoding="utf-8")
         folder.publish()
     assert mark_of(tmp_path / "results" / "out") == "new"
+
+
+def test_files_of_any_name_are_replaced_again_and_again(tmp_path: Path) -> None:
+    """The third comparison was refused: the second had left the first in a hidden folder, whose manifest nobody read."""
+    for number in range(3):
+        files = {"comparison.csv": b"%d" % number, "comparison.md": b"", "parts/a.txt": b""}
+        write_files(files, tmp_path / "comparison")
+        assert (tmp_path / "comparison" / "comparison.csv").read_bytes() == b"%d" % number
+        assert os.listdir(tmp_path) == ["comparison"]
+
+
+def test_files_of_any_name_of_which_a_dead_run_left_a_part_are_tidied(tmp_path: Path) -> None:
+    left = write_files({"comparison.csv": b"old", "parts/a.txt": b""}, tmp_path / ".comparison.replaced")
+    left.rename(tmp_path / "kept")
+    write_files({"comparison.csv": b"new"}, tmp_path / "comparison")
+    (tmp_path / "kept" / "parts" / "a.txt").unlink()
+    (tmp_path / "kept").rename(left)
+    write_files({"comparison.csv": b"newer"}, tmp_path / "comparison")
+    assert os.listdir(tmp_path) == ["comparison"]
+    write_files({"comparison.csv": b"old"}, left)
+    (left / "mine.txt").write_text("mine", encoding="utf-8")
+    with pytest.raises(StorageError, match=r"'mine.txt', which tactsim did not write"):
+        write_files({"comparison.csv": b"newest"}, tmp_path / "comparison")
+    assert (left / "mine.txt").exists()
 
 
 def test_what_a_dead_run_left_is_tidied(tmp_path: Path) -> None:
