@@ -31,8 +31,8 @@ lies above the pole of the lump: with five the pressure over a hard ball of two 
 low, with seven 5 %, with four 6 %, with six 2 %."""
 CLOSE = 0.5
 """Gap to a jaw over the half width of the lump below which it is close: the peak of pressure between a hard ball and a jaw is
-about as wide as the root of twice the product of radius and gap, here as the half width. Taxels over balls of 6 mm are 3.9 % off at
-0.47 with four cells instead of six (12 times the modulus), 2.6 % at 0.52 and 2.3 % at 0.6 and 0.7 (45 times)."""
+about as wide as the root of twice the product of radius and gap, here as the half width. With four cells instead of six, taxels
+over balls of 6 mm are 3.9 % off at 0.47 (12 times the modulus), 2.6 % at 0.52 and 2.3 % at 0.6 and 0.7 (45 times)."""
 SMALL, FAR = 1 / 3, 0.9
 """Height over the block's below which, and gap over the half width above which three cells suffice: the lump is felt little."""
 GATHER = 0.2
