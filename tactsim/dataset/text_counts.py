@@ -45,20 +45,23 @@ class TextCounts:
     def update(self, texts: Iterable[str]) -> None:
         """Counts texts."""
         for text in texts:
-            words, numbers = self._parts(text)
-            if words in self._kinds:
-                self._kinds[words].add(numbers)
-            else:
-                self._kinds[words] = _Kind(1, numbers, numbers)
+            self._add(*self._parts(text))
 
     def update_of_one(self, texts: Iterable[str]) -> None:
         """Counts texts of one sample, each kind once."""
-        self.update({self._parts(text)[0]: text for text in texts}.values())
+        for words, numbers in dict(map(self._parts, texts)).items():
+            self._add(words, numbers)
 
     def most_common(self, most: int | None = None) -> list[tuple[str, int]]:
         """Texts and their counts, the most frequent first."""
         pairs = sorted(self._kinds.items(), key=lambda pair: -pair[1].count)[:most]
         return [(kind.text(words), kind.count) for words, kind in pairs]
+
+    def _add(self, words: tuple[str, ...], numbers: list[str]) -> None:
+        if words in self._kinds:
+            self._kinds[words].add(numbers)
+        else:
+            self._kinds[words] = _Kind(1, numbers, numbers)
 
     def _parts(self, text: str) -> tuple[tuple[str, ...], list[str]]:
         """The beginning of a text: its words, and the numbers between them."""

@@ -83,6 +83,7 @@ def _check_times(sweep: Sweep, recorder: Recorder, experiment: Any) -> None:
         )
 
 
+@lru_cache(maxsize=4)
 def first_case(sweep: Sweep) -> Case:
     """The first possible case of a sweep.
 

@@ -108,7 +108,7 @@ class ClosedForm(Experiment):
     def begin(self) -> Course:
         """Evaluate at the sampled times."""
         annulus, times = self._annulus(), self._times()
-        displacement, force = self.course(times)
+        displacement, force = self._course(annulus, times)
         status, reason = within_layer("end of the history", float(np.abs(displacement).max()), self.thickness)
         columns = (times, displacement, force, annulus.rise(displacement))
         steps = rows(self.history_units, columns)
@@ -125,7 +125,10 @@ class ClosedForm(Experiment):
 
     def course(self, times: Array) -> tuple[Array, Array]:
         """Displacement of the annulus (n,) in m, and the force (n,) in N on it, at times (n,) in s."""
-        annulus, history = self._annulus(), self.loading.history()
+        return self._course(self._annulus(), times)
+
+    def _course(self, annulus: ViscoelasticAnnulus, times: Array) -> tuple[Array, Array]:
+        history = self.loading.history()
         if self.loading.control == "force":
             return annulus.displacement(history, times), history.value(times)
         return history.value(times), annulus.force(history, times)

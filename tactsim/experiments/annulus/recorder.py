@@ -63,15 +63,15 @@ class ClosedFormRecorder(Recorder):
     def readings(self, experiment: ClosedForm, result: Result, generator: np.random.Generator) -> Values:
         """As the closed form has them at the stored times; a sensor reads a force that is straight between these and those that
         the experiment samples."""
-        sampled, _ = history(result)
-        at = self.settings.stored_times(float(sampled[-1]))
-        times = np.union1d(sampled, at)
-        displacement, force = experiment.course(times)
-        stored = np.searchsorted(times, at)
-        readings = {"time_s": at, "displacement": displacement[stored], "force": force[stored]}
+        times, columns = history(result)
+        at = self.settings.stored_times(float(times[-1]))
+        displacement, force = experiment.course(at)
         if self.settings.reading:
-            readings |= self.settings.reading.read(times, force, at, generator)
-        return readings
+            both, first = np.unique(np.concatenate([times, at]), return_index=True)
+            read = self.settings.reading.read(both, np.concatenate([columns["force"], force])[first], at, generator)
+        else:
+            read = {}
+        return {"time_s": at, "displacement": displacement, "force": force, **read}
 
     def describe(self) -> str:
         """What is simulated."""

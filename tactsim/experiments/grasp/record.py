@@ -57,7 +57,6 @@ class GraspRecord(ContactRecord[GraspModel]):
         self.experiment, self._sourced = experiment, sourced
         self.readings: list[dict[str, JawReading]] = []
         self._read: MatrixReading | None = None
-        self._single: tuple[str, ...] = ()
         self._unread: str | None = None
 
     def values(self, state: TimedState) -> dict[str, float]:
@@ -106,7 +105,6 @@ class GraspRecord(ContactRecord[GraspModel]):
             forces = np.array([[reading[side].taxels.taxels[2] for side in JAWS] for reading in self.readings])
             try:
                 self._read = readout.read(times, forces, layout.area)
-                self._single = single_step(readout, times, forces, layout.area)
             except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
                 self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
         findings = super().findings()
@@ -169,7 +167,8 @@ class GraspRecord(ContactRecord[GraspModel]):
         """Warnings about readout, mesh, readings and volumes."""
         readout, warnings = self.experiment.readout, []
         if readout is not None and self._read is not None:
-            warnings = [*self._single, *readout_warnings(readout, self._read, self.experiment.matrix.area)]
+            read = readout, self._read, self.experiment.matrix.area
+            warnings = [*(single_step(*read) if len(self.steps) == 1 else ()), *readout_warnings(*read)]
         if self._unread:
             warnings.append(self._unread)
         warnings += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]

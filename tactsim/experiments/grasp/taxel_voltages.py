@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.array import Array
 from tactsim.experiments.grasp.both_jaws import READ_FORCE, SATURATED, VOLTAGE
+from tactsim.interfaces import SensorFilm
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results.quantity import Quantity
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
@@ -14,6 +14,12 @@ from tactsim.units import format_quantity
 
 AT_END = "at the end; [row][column], row 1 nearest the front (smallest y), column 1 the smallest x"
 OVER_TIME = "at each of readout_time, [time][row][column]"
+ENOUGH_STEPS = 5
+"""Steps of time with which read forces are those of many. A grasp of ICF closed by 1 mm, composite film: with one step they are
+3.7 % above those of twenty, with two 1.1 %, with five 0.3 %, as forces rise ever faster."""
+REMEMBERED = 0.01
+"""Relative difference of the signal of a force that rises in the second half only from that of one that rises evenly, from which
+on a film remembers its history."""
 
 
 def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
@@ -43,14 +49,6 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
     return quantities
 
 
-ENOUGH_STEPS = 5
-"""Steps of time with which read forces are those of many. A grasp of ICF closed by 1 mm, composite film: with one step they are
-3.7 % above those of twenty, with two 1.1 %, with five 0.3 %, as forces rise ever faster."""
-REMEMBERED = 0.01
-"""Relative difference of the signal of a force that acts from the beginning from that of one that rises, from which on a film
-remembers its history."""
-
-
 def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:
     """What is assumed of sensors and electronics."""
     line = readout.line(area)
@@ -69,14 +67,9 @@ def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:
     return tuple(assumptions)
 
 
-def single_step(readout: MatrixReadout, times: Array, forces: Array, area: float) -> tuple[str, ...]:
-    """A warning if forces (n, ...) in N at times (n,) in s are a single step, and the film's signal depends on the past."""
-    end, force = float(times[-1]), float(forces[-1].max())
-    if len(times) > 1 or not (end > 0 and force > 0):
-        return ()
-    film = readout.film_of(area)
-    at_once, evenly = (float(film.read([0.0, end], [first, force])[-1]) for first in (force, 0.0))
-    if abs(at_once / evenly - 1) < REMEMBERED:
+def single_step(readout: MatrixReadout, reading: MatrixReading, area: float) -> tuple[str, ...]:
+    """A warning if the film's signal depends on the past of a force that was computed in a single step."""
+    if not _remembers(readout.film_of(area), float(reading.time[-1]), float(reading.applied[-1].max())):
         return ()
     return (
         "the film creeps, and the force is taken to rise evenly in the one step: read forces may be 5% too high; take "
@@ -94,3 +87,11 @@ def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float
         count = int(reading.saturated.sum())
         warnings.append(f"{count} samples of taxels are outside the range of the converter or not below the supply: saturated_*")
     return tuple(warnings)
+
+
+def _remembers(film: SensorFilm, end: float, force: float) -> bool:
+    """Whether the signal of a film under a force in N at ``end`` in s depends on when the force began to rise."""
+    if not (end > 0 and force > 0):
+        return False
+    late, evenly = (float(film.read([0.0, end / 2, end], [0.0, before, force])[-1]) for before in (0.0, force / 2))
+    return abs(late / evenly - 1) >= REMEMBERED

@@ -78,6 +78,11 @@ class Pattern:
         keys = np.repeat(np.arange(self.size, dtype=np.int64), np.diff(self.indptr)) * self.size + self.indices
         return np.searchsorted(keys, rows.astype(np.int64) * self.size + columns)
 
+    def between(self, unknowns: Array) -> Array:
+        """Places (F, w, w) in ``data`` of the entries between the unknowns (F, w) of each of some facets."""
+        rows = np.repeat(unknowns[:, :, None], unknowns.shape[1], axis=2)
+        return self.positions(rows, rows.transpose(0, 2, 1))
+
     @cached_property
     def _structure(self) -> tuple[Array, Array]:
         return _csr_structure(self._space.element_unknowns(), self.size)

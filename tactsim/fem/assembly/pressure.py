@@ -91,8 +91,7 @@ class _PressedFacets:
     @cached_property
     def _places(self) -> tuple[Array, Array]:
         """Places of the facets' entries in the tangent, each once, and which of them each facet's entries take."""
-        rows = np.repeat(self._unknowns[:, :, None], self._unknowns.shape[1], axis=2)
-        return np.unique(self._pattern.positions(rows, rows.transpose(0, 2, 1)).ravel(), return_inverse=True)
+        return np.unique(self._pattern.between(self._unknowns).ravel(), return_inverse=True)
 
     def _measure(self, x: Array) -> Array:
         """Circumference at the points of an axisymmetric facet (F, Q) in m, one otherwise."""

@@ -50,7 +50,6 @@ class SurfaceAssembly:
     def _places(self) -> tuple[Array, Array]:
         """Places of the surface's entries in the tangent, each once, and which of them each facet's entries take."""
         facets, dim = self.unknowns[:: self.points.per_facet], self._dim
-        width = facets.shape[1]
-        rows = np.repeat(facets[:, :, None], width, axis=2)
-        places = self._pattern.positions(rows, rows.transpose(0, 2, 1)).reshape(len(facets), width // dim, dim, width // dim, dim)
+        nodes = facets.shape[1] // dim
+        places = self._pattern.between(facets).reshape(len(facets), nodes, dim, nodes, dim)
         return np.unique(places.transpose(2, 4, 0, 1, 3).ravel(), return_inverse=True)

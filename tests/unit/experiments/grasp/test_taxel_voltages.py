@@ -44,12 +44,15 @@ def test_a_grasp_with_a_readout_has_the_voltages_of_18_sensors_over_time(read_gr
 
 
 def test_a_film_that_creeps_is_warned_of_where_one_step_is_read():
-    times, forces = np.array([1.0]), np.full((1, 2, 3, 3), 0.4)
-    (warning,) = single_step(READOUT, times, forces, 81e-6)
+    reading = READOUT.read(np.array([1.0]), np.full((1, 2, 3, 3), 0.4), 81e-6)
+    (warning,) = single_step(READOUT, reading, 81e-6)
     assert "take time.steps: 5" in warning
     elastic = SimpleNamespace(film_of=lambda area: CapacitiveFilm.example())
-    assert single_step(elastic, times, forces, 81e-6) == ()
-    assert single_step(READOUT, np.array([0.5, 1.0]), np.repeat(forces, 2, axis=0), 81e-6) == ()
+    assert single_step(elastic, reading, 81e-6) == ()
+    for steps in (1, 2):
+        result = Grasp.example().model_copy(update={"readout": READOUT, "time": {"steps": steps}}).run()
+        assert any("in the one step" in text for text in result.warnings) == (len(result.steps) == 1)
+        assert len(result.steps) == steps
 
 
 def test_without_a_readout_a_grasp_ends_at_the_forces():
