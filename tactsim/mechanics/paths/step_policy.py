@@ -21,6 +21,10 @@ FIRST_SHARE = 1e-3
 """First step of a piece, as a part of its duration or of the shortest relaxation time."""
 SMALLEST_SHARE = 1e-6
 """Smallest step, as a part of the first."""
+RELAXING_GROWTH = 5.0
+"""Most by which a step is longer than the one before while nothing prescribed changes: tissue relaxes smoothly over the decades
+of time, where two steps from stop to stop, as 2 asks for, are no better than one. Usual are 1.5 to 5 (Hairer, Nørsett & Wanner
+1993, doi:10.1007/978-3-540-78862-1, section II.4). Under loads that begin to grow, such steps would be taken back."""
 SMALLEST_LOAD_STEP = 1e-3
 """Smallest load step of elastic tissue, as a part of the largest."""
 
@@ -84,7 +88,11 @@ class StepPolicy:
         shortest = min(interval.duration, self.shortest_time) if resolved else interval.duration
         first = min(interval.duration, self.settings.first or FIRST_SHARE * shortest)
         return TimeControl(
-            self.settings.tolerance, first=first, smallest=SMALLEST_SHARE * first, many_iterations=self.many_iterations
+            self.settings.tolerance,
+            first=first,
+            smallest=SMALLEST_SHARE * first,
+            growth=TimeControl.growth if interval.changes else RELAXING_GROWTH,
+            many_iterations=self.many_iterations,
         )
 
     def largest(self, interval: TimeInterval) -> float:

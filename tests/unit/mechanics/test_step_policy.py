@@ -40,6 +40,10 @@ def test_load_steps_are_those_of_a_sparing_policy_where_nothing_relaxes() -> Non
     assert (timed.first, timed.tolerance) == (pytest.approx(FIRST_SHARE * 2.0), 0.01)
 
 
+def test_steps_grow_faster_while_nothing_changes() -> None:
+    assert [policy(0.5).control(interval).growth for interval in (HELD, RAMPED, BENT)] == [5.0, 2.0, 2.0]
+
+
 def test_first_step_resolves_the_shortest_time_where_it_must() -> None:
     jump = TimeInterval(0.0, 2.0, HELD.segments, sudden=True)
     assert policy(0.01).control(HELD).first == pytest.approx(FIRST_SHARE * 0.01)
