@@ -92,7 +92,8 @@ def first_case(sweep: Sweep) -> Case:
     CaseError
         If a distribution does not suit its place, or none of the first cases is possible.
     """
-    check_suitable(sweep)
+    if not sweep.checked:
+        check_suitable(sweep)
     fault, last = fault_of(sweep), None
     if fault:
         raise CaseError(fault)

@@ -41,6 +41,8 @@ class Sweep:
     """Drawn once per specimen."""
     sample_places: tuple[Place, ...]
     """Drawn for each sample of a specimen."""
+    checked: bool = False
+    """Whether its distributions were held against their places before, as those of a text are that `Sweep.text` wrote."""
 
     @property
     def places(self) -> tuple[Place, ...]:
@@ -128,7 +130,7 @@ def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
         If the text is not that of a sweep.
     """
     document = Document(json.loads(text), folder=None if folder is None else FilePath(folder))
-    return _sweep(document, lambda problem: "the sweep", None, checked=True)
+    return replace(_sweep(document, lambda problem: "the sweep", None, checked=True), checked=True)
 
 
 def _sweep(document: Document, where: Where, samples: int | None, checked: bool = False) -> Sweep:
@@ -198,7 +200,7 @@ def _grid(
         raise _wrong("design", f"the grid has {outer * inner} points; allowed: {MOST_SAMPLES}")
     if wanted not in (None, outer * inner):
         raise _wrong("samples", f"{wanted} asked for, but the grid has {outer * inner} points; leave it out")
-    return Sweep(document, where, settings, outer * inner, inner, *places)
+    return Sweep(document, where, settings, outer * inner, inner, places[0], places[1])
 
 
 def sizes_of(places: tuple[Place, ...]) -> tuple[int, ...]:

@@ -35,7 +35,8 @@ from tactsim.dataset.sampling.sweep import Sweep, load_sweep
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import chunk_samples, set_attributes
-from tactsim.dataset.use.card import redrawn, split_counts
+from tactsim.dataset.use.card import description
+from tactsim.dataset.use.counts import redrawn, split_counts
 from tactsim.dataset.use.loading import load
 from tactsim.errors import CaseError, InputError, StorageError, TactsimError
 from tactsim.interfaces.variable import Variable
@@ -227,7 +228,12 @@ def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path
         patch.setattr(running, "write", full)
         with pytest.raises(StorageError, match="no room"):
             going.compute(Inline(sweep), lambda tally: None)
-    assert [finding.kind for finding in check(place).findings] == ["missing", "unfinished"]
+    findings, waiting = check(place).findings, int(going.tally.done)
+    assert [finding.kind for finding in findings] == ["missing", "unfinished"]
+    assert f"24 samples are not in the arrays, {waiting} of them computed and in the journal" in findings[0].words
+    lines = description(place).splitlines()
+    assert f"pending {24 - waiting}" in [" ".join(line.split()) for line in lines]
+    assert any(line.split()[:2] == ["waiting", f"{waiting}"] for line in lines)
     with opened_run(sweep, place, resume=True, accept_changes=True):
         pass
     assert_same(whole, place)

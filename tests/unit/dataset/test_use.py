@@ -30,7 +30,8 @@ from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import ChunkRead
 from tactsim.dataset.text_counts import TextCounts
-from tactsim.dataset.use.card import description, failures
+from tactsim.dataset.use.card import description
+from tactsim.dataset.use.counts import failures
 from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.interfaces.variable import Variable, reading
 from tactsim.storage.building import MARK
