@@ -218,6 +218,20 @@ def check_replaceable(path: Path, replace: bool, *others: Path) -> None:
         raise StorageError("; ".join(words))
 
 
+def refuse_others(path: Path, file: str, what: str) -> None:
+    """Refuses a folder of tactsim without the file by which those are known that a command replaces without asking.
+
+    Raises
+    ------
+    StorageError
+        If the folder holds anything else; ``what`` is what the command calls those that it replaces.
+    """
+    if (path / RESULT_FILE).exists():
+        raise StorageError(f"{one_line(path)} holds a result, which no {what} replaces; choose another folder")
+    if (path / MANIFEST).exists() and not (path / file).exists():
+        raise StorageError(f"{one_line(path)} holds something else than a {what}, which is not replaced; choose another folder")
+
+
 def _is_taken(path: Path) -> bool:
     return os.path.lexists(path) and (path.is_symlink() or not path.is_dir() or any(path.iterdir()))
 
