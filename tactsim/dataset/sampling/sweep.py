@@ -19,7 +19,7 @@ from tactsim.case.loading import Place as Where
 from tactsim.case.loading import case_error, read_document
 from tactsim.case.model import SCHEMA as CASE_SCHEMA
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
-from tactsim.dataset.sampling.settings import OF_THE_CARD, SCHEMA, SweepSettings
+from tactsim.dataset.sampling.settings import LICENCE, OF_THE_CARD, SCHEMA, SweepSettings
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.errors import CaseError, InputError, suggestion
 from tactsim.interfaces.distributions import READERS, Distribution, Listed, distribution
@@ -59,6 +59,8 @@ class Sweep:
     def text(self) -> str:
         """The whole sweep as canonical JSON; `sweep_of_text` reads it."""
         section = self.settings.model_dump(mode="json") | {"samples": self.samples}
+        if section["license"] == LICENCE:
+            del section["license"]  # so that the text of stores from before there was the key is the same
         return json.dumps({**self.document.value, "schema": SCHEMA, SECTION: section}, sort_keys=True, allow_nan=False)
 
     @property

@@ -155,9 +155,13 @@ def test_an_existing_store_needs_resume_and_the_same_sweep(whole: Path, tmp_path
     with pytest.raises(StorageError, match="would lose some"):
         run_sweep(load_sweep(sweep_file(tmp_path), samples=12), place, resume=True)
     run_sweep(load_sweep(sweep_file(tmp_path), samples=30), place, resume=True)
-    retold = TEXT.replace("times: 4", "times: 4\n  title: Told anew\n  limits: None known\n  time_limit: 1 min")
+    retold = TEXT.replace(
+        "times: 4", "times: 4\n  title: Told anew\n  limits: None known\n  license: CC0-1.0\n  time_limit: 1 min"
+    )
     run_sweep(load_sweep(sweep_file(tmp_path, retold), samples=30), place, resume=True)
-    assert [Store.open(place).attributes[name] for name in ("title", "limits")] == ["Told anew", "None known"]
+    assert [Store.open(place).attributes[name] for name in ("title", "limits", "license")] == [
+        *("Told anew", "None known", "CC0-1.0"),
+    ]
     longer = content(place)
     for name, values in content(whole).items():
         np.testing.assert_array_equal(values, longer[name][:24], err_msg=name)

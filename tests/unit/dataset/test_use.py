@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 from fork_server import forked_python
-from sweeps import compute_once_here, sweep_file
+from sweeps import TEXT, compute_once_here, sweep_file
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, checking, load, sample_case
@@ -253,7 +253,8 @@ def test_reading_needs_no_torch_and_no_dask() -> None:
 
 def test_a_sweep_by_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     compute_once_here(monkeypatch)
-    case, place = str(sweep_file(tmp_path)), str(tmp_path / "s.zarr")
+    text = TEXT.replace("times: 4", "times: 4\n  license: CC0-1.0")
+    case, place = str(sweep_file(tmp_path, text)), str(tmp_path / "s.zarr")
     assert main(["sweep", case, "--out", place, "--samples", "6", "--workers", "1", "--progress"]) == 0
     out, err = capsys.readouterr()
     assert out.startswith("6 samples done, 0 failed in ")
@@ -266,7 +267,7 @@ def test_a_sweep_by_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert Path(place, "figures", "spread.png").read_bytes().startswith(b"\x89PNG")
     card = Path(place, "README.md").read_text(encoding="utf-8")
     for part in (
-        "license: cc-by-4.0",
+        "license: cc0-1.0",
         "Design sobol, seed 7, 6 samples",
         "| done | 6 |",
         "| softer | ",
