@@ -13,8 +13,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, Self, TypeVar, final
 
-from tactsim.deadline import TOO_LONG, check_time, time_limit
-from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished
+from tactsim.deadline import TOO_LONG, allowed_seconds, check_time, time_limit
+from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished, shown
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
 from tactsim.kind import CaseKind
@@ -23,7 +23,6 @@ from tactsim.progress import COMPILATION, quiet, step_bar
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import FieldFrame, Result, Status, StepRecord
 from tactsim.results.scene import Scene
-from tactsim.units import parse_quantity
 
 Progress = Callable[[StepRecord], None]
 Made = TypeVar("Made")
@@ -181,12 +180,14 @@ class Runnable(CaseKind):
         Unfinished
             If it ended before its first step was begun: there is nothing to keep.
         """
-        seconds = parse_quantity(time_limit, "s") if isinstance(time_limit, str) else time_limit
+        seconds = allowed_seconds(time_limit)
+        if progress is not None and progress != "bar" and not callable(progress):
+            raise InputError(f"progress is {shown(progress)}; needed: a function of a step, 'bar', or None")
         if progress != "bar":
             with quiet(progress is None):
                 return run_experiment(self, progress, seconds)
-        with step_bar(self.kind.replace("_", " "), self.extent) as shown:
-            return run_experiment(self, shown, seconds)
+        with step_bar(self.kind.replace("_", " "), self.extent) as bar:
+            return run_experiment(self, bar, seconds)
 
 
 def run_experiment(experiment: Runnable, progress: Progress | None, seconds: float | None) -> Result:

@@ -239,7 +239,8 @@ def _is_taken(path: Path) -> bool:
 def _why_never(path: Path) -> str:
     """Why what stands at a place is never replaced, in words; empty if it may be."""
     if path.is_symlink() or not path.is_dir():
-        return f"the output folder {one_line(path)} exists and is not a folder; choose another place"
+        link = " but a link" if path.is_symlink() else ""
+        return f"the output folder {one_line(path)} exists and is not a folder{link}; choose another place"
     strangers = _foreign(path)
     more = f" and {len(strangers) - 1} more" if len(strangers) > 1 else ""
     advice = "move that away or choose another folder"
