@@ -151,7 +151,9 @@ def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
     names = [variable.name for variable in variables]
     torn = sum(is_torn(name, names) for name in walked(store.path))
     if torn:
-        yield Finding("unfinished", (), f"{torn} files that a killed run left half written; --resume removes them")
+        yield Finding(
+            "unfinished", (), f"{torn} files half written, by a sweep that is running or was killed; --resume removes them"
+        )
     foreign = foreign_files(store.path, store.described, names)
     if foreign:
         more = f" and {len(foreign) - 10} more" if len(foreign) > 10 else ""

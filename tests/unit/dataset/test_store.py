@@ -243,6 +243,18 @@ def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path
     assert_same(whole, place)
 
 
+def test_a_store_that_is_written_is_in_use_by_whatever_link_it_is_named(tmp_path: Path) -> None:
+    sweep, place, link = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr", tmp_path / "link.zarr"
+    link.symlink_to(place)
+    with opened_run(sweep, place):
+        for other in (place, link):
+            with (
+                pytest.raises(StorageError, match="in use by another sweep"),
+                opened_run(sweep, other, resume=True, accept_changes=True),
+            ):
+                pass
+
+
 def test_a_lost_worker_costs_a_try_and_at_last_only_the_sample_that_kills(whole: Path, tmp_path: Path) -> None:
     sweep = load_sweep(sweep_file(tmp_path))
     run_sweep(sweep, tmp_path / "lucky.zarr", losing={5: 2})
