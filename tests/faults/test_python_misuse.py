@@ -45,6 +45,17 @@ def test_progress_that_cannot_be_called_is_refused() -> None:
         ts.ClosedForm.example().run(3)  # type: ignore[arg-type]
 
 
+@pytest.mark.parametrize("name", [3, None, ["icf_stable"], b"icf_stable"])
+def test_names_that_are_no_text_are_refused(name: object) -> None:
+    with pytest.raises(ts.InputError, match="unknown material set"):
+        ts.material(name)  # type: ignore[arg-type]
+    with pytest.raises(ts.InputError, match="read_uniaxial_curve: needed: a path or a text"):
+        ts.read_uniaxial_curve(name)  # type: ignore[arg-type]
+    if name is not None:
+        with pytest.raises(ts.InputError, match="unknown extension point"):
+            ts.kinds(name)  # type: ignore[arg-type]
+
+
 @pytest.mark.parametrize("overrides", [5, b"experiment.points=3", ["experiment.points=3", 5], None])
 def test_overrides_that_are_no_text_are_refused(overrides: object) -> None:
     with pytest.raises(ts.InputError, match=r"overrides: .*; needed: \{'experiment.recess'"):

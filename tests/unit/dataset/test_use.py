@@ -71,6 +71,16 @@ def test_unknown_names_are_refused(kept: Path, tmp_path: Path) -> None:
         load(tmp_path)
 
 
+def test_one_name_stands_for_a_list_of_it_and_no_name_is_refused(kept: Path) -> None:
+    assert list(load(kept, variables="force").data_vars) == ["force"]
+    assert TorchSamples(kept, inputs="read_force", targets="inner_radius").inputs == ("read_force",)
+    for given in ({"variables": 3}, {"split": 3}):
+        with pytest.raises(InputError, match=rf"{next(iter(given))}: 3; needed: a name, or a list of names"):
+            load(kept, **given)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"inputs: 3; needed: a name"):
+        TorchSamples(kept, inputs=3)  # type: ignore[arg-type]
+
+
 def test_a_whole_store_has_no_findings(kept: Path) -> None:
     checked = check(kept)
     assert checked.findings == ()
