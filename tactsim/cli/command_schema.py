@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 from pathlib import Path
 from typing import Any
 
@@ -60,7 +59,7 @@ def _refuse_other(path: Path) -> None:
     from tactsim.outside.files import opened
     from tactsim.outside.text import one_line
 
-    if not os.path.lexists(path) or not (text := opened(path, "description").read()):
+    if not path.is_file() or not (text := opened(path, "description").read()):
         return
     try:
         content = json.loads(text)
