@@ -7,8 +7,10 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from numbers import Real
 
-from tactsim.errors import OutOfTime
+from tactsim.errors import InvalidQuantity, OutOfTime, shown
+from tactsim.units import parse_quantity
 
 TOO_LONG = "took longer than the"
 """How the reason of a computation begins that its time did not suffice for."""
@@ -18,6 +20,20 @@ _LIMIT: ContextVar[tuple[float, float] | None] = ContextVar("limit", default=Non
 
 _STOPPED: ContextVar[Callable[[], bool] | None] = ContextVar("stopped", default=None)
 """Asked now and then whether the computation in this thread is to stop."""
+
+
+def allowed_seconds(limit: float | str | None) -> float | None:
+    """The time in s that a limit such as 300 or "5 min" allows; None for none.
+
+    Raises
+    ------
+    InvalidQuantity
+        If it is no time, or not positive.
+    """
+    seconds = parse_quantity(limit, "s") if isinstance(limit, str) else limit
+    if seconds is not None and (not isinstance(seconds, Real) or isinstance(seconds, bool) or not seconds > 0):
+        raise InvalidQuantity(f"time_limit is {shown(limit)}; needed: a positive number of seconds, or text such as '5 min'")
+    return None if seconds is None else float(seconds)
 
 
 @contextmanager

@@ -91,10 +91,10 @@ class InvalidQuantity(InputError, ValueError):
 class UnknownName(InputError, LookupError):
     """A name that is not registered; the message names the nearest one, and lists all or says what lists them."""
 
-    def __init__(self, what: str, name: str, allowed: Iterable[str], listed_by: str = ""):
+    def __init__(self, what: str, name: object, allowed: Iterable[str], listed_by: str = ""):
         choices = sorted(allowed)
         all_of_them = f"{listed_by} lists all" if listed_by else f"known: {', '.join(choices)}"
-        super().__init__(f"unknown {what} {shown(name)}{suggestion(name, choices)}; {all_of_them}")
+        super().__init__(f"unknown {what} {shown(name)}{suggestion(str(name), choices)}; {all_of_them}")
 
 
 class AmbiguousKind(InputError):

@@ -259,7 +259,7 @@ def shipped(what: str, name: str, library: Mapping[str, Any]) -> Any:
     UnknownName
         With the nearest name.
     """
-    if name not in library:
+    if not isinstance(name, str) or name not in library:
         raise UnknownName(what, name, library)
     return library[name]
 

@@ -17,7 +17,7 @@ from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experim
 from tactsim.case.overrides import apply_override, set_value
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
-from tactsim.errors import CaseError, InputError, StorageError, UnknownName, suggestion
+from tactsim.errors import CaseError, InputError, StorageError, UnknownName, shown, suggestion
 from tactsim.model import plain
 from tactsim.outside.files import LIMITS, TooLarge, Unreadable, named_path, opened
 from tactsim.outside.text import one_line
@@ -80,6 +80,11 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
         document = _read_file(path)
     overridden: dict[KeyPath, str] = {}
     overrides = [overrides] if isinstance(overrides, str) else overrides
+    if not isinstance(overrides, Mapping) and not (
+        isinstance(overrides, list | tuple) and all(isinstance(one, str) for one in overrides)
+    ):
+        needed = "{'experiment.recess': '0.4 mm'}, or texts such as 'experiment.recess=0.4 mm'"
+        raise InputError(f"overrides: {shown(overrides)}; needed: {needed}")
     option = "override" if isinstance(overrides, Mapping) else "--set"
     given = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
     named = ((str(override), value) for override, value in given)
@@ -90,9 +95,9 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
             else:
                 key_path = apply_override(document, override)
         except YamlProblems as error:
-            raise case_error(error.problems, lambda _, text=override: f"{option} {text}") from None  # type: ignore[misc]
+            raise case_error(error.problems, lambda _, text=override: f"{option} {one_line(text)}") from None  # type: ignore[misc]
         except InputError as error:
-            raise CaseError(f"{option} {override}: {error}") from None
+            raise CaseError(f"{option} {one_line(override)}: {error}") from None
         overridden[key_path] = f"{option} {override.partition('=')[0].strip()}"
     return document, place_in(path, overridden)
 

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.errors import InputError, StorageError, UnknownName
+from tactsim.errors import InputError, UnknownName
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -32,6 +32,8 @@ examples:
   tactsim compare results/designs --out designs
 """
 LONGEST_NAME = 24
+TABLE_FILE = "comparison.csv"
+"""What every comparison holds."""
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -52,27 +54,16 @@ def run(arguments: argparse.Namespace) -> int:
         If a result cannot be read or the folder cannot be written.
     """
     from tactsim.results import read_result
+    from tactsim.results.folder import refuse_others
 
     if arguments.out is not None:
-        refuse_result(arguments.out)
+        refuse_others(arguments.out, TABLE_FILE, "comparison")
     folders = [folder for place in arguments.results for folder in _folders(place)]
     stored = {name: read_result(folder, fields=False) for name, folder in _named(folders).items()}
     if len(stored) < 2:
         raise InputError("one result has nothing to be compared with; name two or more, or a folder that holds several")
     report({name: one.complete for name, one in stored.items()}, arguments.out, everything=arguments.all)
     return 0
-
-
-def refuse_result(out: Path) -> None:
-    """Refuses the folder of a result as that of a comparison, which replaces an earlier one without a word.
-
-    Raises
-    ------
-    StorageError
-        If there is a result.
-    """
-    if (out / "result.json").exists():
-        raise StorageError(f"{one_line(out)} holds a result, which no comparison replaces; choose another folder")
 
 
 def report(results: Mapping[str, Result], out: Path | None, *, everything: bool = False, quiet: bool = False) -> None:
@@ -87,7 +78,7 @@ def report(results: Mapping[str, Result], out: Path | None, *, everything: bool 
         from tactsim.results.writing import write_files
 
         picture = comparison_png(results, comparison)
-        texts = {"comparison.csv": comparison.csv_text(), "comparison.md": comparison.markdown_text()}
+        texts = {TABLE_FILE: comparison.csv_text(), "comparison.md": comparison.markdown_text()}
         write_files({name: text.encode() for name, text in texts.items()} | {"comparison.png": picture}, out)
         if not quiet:
             console.out(f"comparison {one_line(out)}")

@@ -116,15 +116,15 @@ def _refuse_early(arguments: argparse.Namespace, places: list[Path]) -> None:
         What the case, or its place, would be refused with.
     """
     from tactsim.case.loading import read_document, validated_case
-    from tactsim.cli.command_compare import refuse_result
+    from tactsim.cli.command_compare import TABLE_FILE
     from tactsim.outside.library_warnings import collected_warnings
-    from tactsim.results.folder import check_replaceable
+    from tactsim.results.folder import check_replaceable, refuse_others
 
     for path in arguments.cases:
         with collected_warnings():  # its turn reports them
             validated_case(*read_document(path, arguments.set))
     check_replaceable(places[0], _may_replace(arguments), *places[1:])
-    refuse_result(places[-1])
+    refuse_others(places[-1], TABLE_FILE, "comparison")
 
 
 def _may_replace(arguments: argparse.Namespace) -> bool:

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from tactsim.cli import console
+from tactsim.errors import StorageError
 
 NAME = "schema"
 SUMMARY = "print the JSON Schema of case or sweep files, for editors"
@@ -40,8 +41,32 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.out is None:
         console.out(text)
     else:
+        _refuse_other(arguments.out)
         replace_file(arguments.out, f"{text}\n".encode())
     return 0
+
+
+def _refuse_other(path: Path) -> None:
+    """Refuses a file in the place of a schema that is none, such as a case.
+
+    Raises
+    ------
+    StorageError
+        If the file is no JSON Schema.
+    """
+    import json
+
+    from tactsim.outside.files import opened
+    from tactsim.outside.text import one_line
+
+    if not path.is_file() or not (text := opened(path, "description").read()):
+        return
+    try:
+        content = json.loads(text)
+    except (ValueError, RecursionError):
+        content = None
+    if not isinstance(content, dict) or "properties" not in content:
+        raise StorageError(f"{one_line(path)} exists and is no JSON Schema; choose another FILE")
 
 
 def _schema(sweep: bool) -> dict[str, Any]:

@@ -134,7 +134,8 @@ def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:
 
 def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> int:
     from tactsim.dataset.store.arrays import FAILED
-    from tactsim.dataset.use.card import empty_split_lines, empty_splits, split_counts
+    from tactsim.dataset.use.card import empty_split_lines
+    from tactsim.dataset.use.counts import empty_splits, split_counts
 
     failed = int((going.store.read("status") == FAILED).sum())
     if not arguments.quiet:

@@ -22,7 +22,8 @@ Computes every number that the tables (cases/thesis, cases/published) record, an
 row how it ends: reproduced (after an erratum), confirmed, inside a range, outside by a factor,
 contradicted, transcribed, regression, not testable. A known deviation does not fail; a row that
 leaves its class, or is absent, does. Simulations are taken from a cache unless --fresh is given.
-The report is one HTML file that opens from disk, with the same as Markdown and JSON beside it.
+The report is one HTML file that opens from disk, with the same as Markdown and JSON beside it;
+it takes the place of an earlier report, and of nothing else.
 """
 EXAMPLES = """\
 examples:
@@ -32,6 +33,8 @@ examples:
   tactsim validate table_3_2 --fresh --workers 4
 """
 NOT_WRITTEN = "no report is written; simulations that ended are kept, and the same command without --fresh goes on from there"
+REPORT = "validation.json"
+"""What every report holds."""
 GROUPS = (Path("cases", "thesis"), Path("cases", "published"))
 
 
@@ -54,7 +57,7 @@ def run(arguments: argparse.Namespace) -> int:
     TactsimError
         Whatever ends the command with an exit code of its own, such as options that do not go together.
     """
-    from tactsim.results.folder import claimed
+    from tactsim.results.folder import claimed, refuse_others
     from tactsim.validation import load_groups, summary_text
 
     if arguments.workers is not None and arguments.workers < 1:
@@ -62,6 +65,7 @@ def run(arguments: argparse.Namespace) -> int:
     folders = [arguments.folder] if arguments.folder else shipped_folders()
     groups = load_groups(folders, arguments.tables)
     with claimed(arguments.out, replace=True) as folder:  # a place that is refused is refused before minutes of computing
+        refuse_others(arguments.out, REPORT, "validation report")
         try:
             validations = [_validated(loaded, arguments) for loaded in groups]
         except KeyboardInterrupt:
@@ -84,7 +88,7 @@ def _write(validations: Sequence[Validation], folder: OutputFolder) -> None:
     names = {table: list(drawn) for table, drawn in figures.items()}
     reports = {
         "validation.html": html_report(validations, figures).encode(),
-        "validation.json": json_report(validations).encode(),
+        REPORT: json_report(validations).encode(),
         "validation.md": markdown_report(validations, names).encode(),
     }
     drawings = {f"figures/{name}": content for drawn in figures.values() for name, content in drawn.items()}

@@ -17,7 +17,7 @@ from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, WORDS, d
 from tactsim.dataset.store.blocks import JOURNAL
 from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
 from tactsim.dataset.store.opening import ARRAYS, Store, consolidated_metadata
-from tactsim.dataset.store.verifying import ChunkRead, computed_chunks, lost_status
+from tactsim.dataset.store.verifying import ChunkRead, computed_chunks, lost_status, waiting_in_journal
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
@@ -129,8 +129,8 @@ def _attributes(store: Store, sweep: Sweep, layout: Layout) -> Iterator[Finding]
         if written.get(name) != expected.get(name):
             words = f"{name} is {one_line(written.get(name), 120)!r}; expected: {one_line(expected.get(name), 120)!r}"
             yield Finding("attribute", (), f"{words}; bring back a copy of zarr.json")
-    names = [variable.name for variable in layout.variables]
-    if store.keeps_all_chunks and sorted(written[ARRAYS]) != sorted(names):
+    names = {variable.name for variable in layout.variables}
+    if store.keeps_all_chunks and sorted(written[ARRAYS]) != sorted(names.difference(store.never_stored(names))):
         yield Finding("attribute", (), f"{ARRAYS} does not name the arrays of the sweep; bring back a copy of zarr.json")
 
 
@@ -151,7 +151,9 @@ def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
     names = [variable.name for variable in variables]
     torn = sum(is_torn(name, names) for name in walked(store.path))
     if torn:
-        yield Finding("unfinished", (), f"{torn} files that a killed run left half written; --resume removes them")
+        yield Finding(
+            "unfinished", (), f"{torn} files half written, by a sweep that is running or was killed; --resume removes them"
+        )
     foreign = foreign_files(store.path, store.described, names)
     if foreign:
         more = f" and {len(foreign) - 10} more" if len(foreign) > 10 else ""
@@ -165,11 +167,17 @@ def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
 
 
 def _missing(store: Store, status: Array) -> Iterator[Finding]:
-    pending, lost = np.flatnonzero(status == PENDING), lost_status(store)
+    pending, lost, waiting = np.flatnonzero(status == PENDING), lost_status(store), np.arange(0)
+    try:
+        waiting = waiting_in_journal(store)
+    except StorageError as error:
+        yield Finding("damaged", (), f"{error}")
     if lost.size:
         yield Finding("missing", tuple(lost.tolist()), f"the status of {lost.size} samples that were computed is gone; {RESUME}")
     elif pending.size:
-        yield Finding("missing", tuple(pending.tolist()), f"{pending.size} samples are not computed; go on with --resume")
+        part = f"{pending.size} samples are not in the arrays, {waiting.size} of them computed and in the journal"
+        words = part if waiting.size else f"{pending.size} samples are not computed"
+        yield Finding("missing", tuple(pending.tolist()), f"{words}; go on with --resume")
     if (store.path / JOURNAL).exists():
         yield Finding("unfinished", (), "samples wait in the journal; a sweep is running, or was killed: --resume")
     unknown = np.flatnonzero(status > FAILED)

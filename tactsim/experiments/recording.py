@@ -62,9 +62,10 @@ def _number(recorder: Recorder, variable: Variable, result: Result) -> Array:
         raise CaseError(f"sweep.quantities.{variable.name}: {error}; expected a unit of its dimension") from None
 
 
-def history(result: Result) -> tuple[Array, dict[str, Array]]:
-    """Times (n,) in s and the history values (n,) by name, with their beginning at 0 s if the result begins later."""
-    times = np.array([step.values["time"] for step in result.steps])
+def history(result: Result, along: str = "time") -> tuple[Array, dict[str, Array]]:
+    """Times (n,) in s, or what else grows, and the history values (n,) by name, with their beginning at 0 if the result begins
+    later."""
+    times = np.array([step.values[along] for step in result.steps])
     columns = {name: np.array([step.values.get(name, np.nan) for step in result.steps]) for name in result.units}
     if times[0] > 0:
         times = np.append(0.0, times)

@@ -11,6 +11,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.identification.table import Table, read_table
+from tactsim.outside.files import named_path
 from tactsim.outside.text import one_line
 from tactsim.units import parse_quantity
 
@@ -99,7 +100,7 @@ def read_uniaxial_curve(path: str | Path) -> UniaxialCurve:
     InvalidQuantity
         If it holds no usable curve, with file and line.
     """
-    table, name = _below_preamble(read_table(path)), one_line(path)
+    table, name = _below_preamble(read_table(named_path(path, "read_uniaxial_curve"))), one_line(path)
     strain_at, strain_name, percent = _column(table, STRETCH_COLUMNS)
     stress_at, stress_name, unit = _column(table, STRESS_COLUMNS)
     factor = _stress_factor(table, stress_name, unit)

@@ -39,6 +39,6 @@ def kinds(point: str | None = None) -> dict[str, Any]:
     """
     if point is None:
         return {name: registry.kinds(base) for name, base in POINTS.items()}
-    if point not in POINTS:
+    if not isinstance(point, str) or point not in POINTS:
         raise UnknownName("extension point", point, POINTS)
     return registry.kinds(POINTS[point])

@@ -8,7 +8,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from tactsim.interfaces.recording import Recording, Values
+from tactsim.interfaces.recording import ComputedSteps, Recording, Values
 from tactsim.interfaces.variable import Variable
 from tactsim.kind import Kind
 from tactsim.results.result import Result
@@ -41,10 +41,10 @@ class Recorder(Kind):
         """What its result holds beside ``quantities``; sizes as those of this experiment."""
         return []
 
-    def longest_step(self, experiment: Any) -> float:
-        """Longest time in s, as far as it is known before the experiment is run, between computed moments of a history while a
-        prescribed value changes; what is stored in between lies on straight lines."""
-        return 0.0
+    def steps(self, experiment: Any) -> ComputedSteps | None:
+        """How far apart the computed moments of a history may lie, as far as it is known before the experiment is run; None if
+        what is stored does not rest on them."""
+        return None
 
     def labels(self, experiment: Any) -> Values:
         """Values of `labels_of`."""

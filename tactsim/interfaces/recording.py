@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
+from dataclasses import dataclass
 from typing import Annotated, Self
 
 import numpy as np
@@ -17,6 +18,21 @@ Values = dict[str, Array]
 """Values of variables by name."""
 
 
+@dataclass(frozen=True)
+class ComputedSteps:
+    """How far apart the computed moments of a history may lie while a prescribed value changes: what is stored in between lies on
+    straight lines."""
+
+    longest: float
+    """Longest step, in SI units of what grows; 0 if nothing changes."""
+    end: float
+    """Where the history ends, or the furthest that it may come to, in the same unit."""
+    unit: str
+    """SI unit of both."""
+    shorter: str
+    """The setting that makes as many steps as there are stored times, as a case file has it."""
+
+
 class ForceReader(FrozenModel, ABC):
     """A sensor under the force of a history."""
 
@@ -29,7 +45,8 @@ class Recording(FrozenModel):
     """How much of a result is stored."""
 
     times: Annotated[int, Field(ge=1, le=100_000)] = 1
-    """Stored times of a history, evenly spaced up to its end; 1 stores the end."""
+    """Stored moments of a history, evenly spaced up to its end: in time, or of an indentation without time in its displacement; 1
+    stores the end."""
     quantities: dict[str, str] | None = None
     """Name of a number of the result -> unit in which it is stored, any of its dimension, such as mN; by default the numbers that
     the kind of experiment declares."""
@@ -45,5 +62,5 @@ class Recording(FrozenModel):
         return self
 
     def stored_times(self, end: float) -> Array:
-        """The stored times (times,) in s of a history that ends at ``end``."""
+        """The stored times (times,) in s of a history that ends at ``end``, or what else grows, in its unit."""
         return np.arange(1, self.times + 1) * end / self.times

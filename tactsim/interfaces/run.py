@@ -13,8 +13,8 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal, Self, TypeVar, final
 
-from tactsim.deadline import check_time, time_limit
-from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished
+from tactsim.deadline import TOO_LONG, allowed_seconds, check_time, time_limit
+from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished, shown
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
 from tactsim.kind import CaseKind
@@ -23,7 +23,6 @@ from tactsim.progress import COMPILATION, quiet, step_bar
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import FieldFrame, Result, Status, StepRecord
 from tactsim.results.scene import Scene
-from tactsim.units import parse_quantity
 
 Progress = Callable[[StepRecord], None]
 Made = TypeVar("Made")
@@ -63,12 +62,14 @@ class Course:
     findings : gives what was accepted until now; called once, after the steps have ended for whatever reason
     kept : what an interruption leaves, in words
     setup_is_timed : whether the time that `Experiment.begin` took is reported beside the total
+    if_slow : behind the reason of a run whose time did not suffice: what takes less of it
     """
 
     steps: Iterable[StepRecord]
     findings: Callable[[], Findings]
     kept: str = ACCEPTED_STEPS
     setup_is_timed: bool = False
+    if_slow: str = ""
 
     @classmethod
     def computed(cls, findings: Findings) -> Self:
@@ -179,12 +180,14 @@ class Runnable(CaseKind):
         Unfinished
             If it ended before its first step was begun: there is nothing to keep.
         """
-        seconds = parse_quantity(time_limit, "s") if isinstance(time_limit, str) else time_limit
+        seconds = allowed_seconds(time_limit)
+        if progress is not None and progress != "bar" and not callable(progress):
+            raise InputError(f"progress is {shown(progress)}; needed: a function of a step, 'bar', or None")
         if progress != "bar":
             with quiet(progress is None):
                 return run_experiment(self, progress, seconds)
-        with step_bar(self.kind.replace("_", " "), self.extent) as shown:
-            return run_experiment(self, shown, seconds)
+        with step_bar(self.kind.replace("_", " "), self.extent) as bar:
+            return run_experiment(self, bar, seconds)
 
 
 def run_experiment(experiment: Runnable, progress: Progress | None, seconds: float | None) -> Result:
@@ -221,7 +224,7 @@ def _ended_early(course: Course, progress: Progress | None) -> tuple[Status, str
                 progress(step)
             check_time()
     except Unfinished as error:
-        return Status.FAILED, failure(error)
+        return Status.FAILED, failure(error) + (course.if_slow if str(error).startswith(TOO_LONG) else "")
     except MemoryError:
         return Status.FAILED, NO_MEMORY
     except KeyboardInterrupt:

@@ -17,6 +17,7 @@ from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.outside.arrays import LARGEST_FOREIGN, read_arrays
 from tactsim.outside.files import opened
 from tactsim.outside.text import one_line
+from tactsim.units import format_quantity
 
 SCHEMA = "tactsim/learned/1"
 OUTPUTS = ("x", "y", "z", "radius")
@@ -63,6 +64,8 @@ class LearnedWeights:
     growth: Array
     held_out: int = 0
     """Grasps with a lump from which the covariance was estimated."""
+    held_out_error: tuple[float, float] | None = None
+    """Medians in m of their errors in plan and in height, of weights that were just trained; a file does not keep it."""
 
     def probability(self, features: Array) -> float:
         """That there is a lump, for features (inputs,)."""
@@ -98,7 +101,11 @@ class LearnedWeights:
     def summary(self) -> str:
         """Number of networks and weights, and of the grasps held out, in words."""
         count = sum(matrix.size for matrix in self.places[0].matrices)
-        return f"{len(self.places)} networks of {count} weights, {self.held_out} lumps held out"
+        words = f"{len(self.places)} networks of {count} weights, {self.held_out} lumps held out"
+        if self.held_out_error is None:
+            return words
+        plan, height = (format_quantity(float(f"{error:.2g}"), "m") for error in self.held_out_error)
+        return f"{words}, which are in the median {plan} off in plan and {height} in height, with noise"
 
     def content(self) -> bytes:
         """As the bytes of an npz file, without pickle."""
@@ -143,7 +150,9 @@ def read_weights(path: str | Path) -> LearnedWeights:
         layout = TaxelLayout.model_validate_json(str(file["layout"]), strict=True)
         numbers = {name: np.asarray(file[name], dtype=float) for name in NUMBERS}
         held_out = int(file["held_out"])
-        weights = LearnedWeights(layout=layout, places=tuple(places), presence=presence, held_out=held_out, **numbers)
+        weights = LearnedWeights(
+            layout=layout, places=tuple(places), presence=presence, held_out=held_out, held_out_error=None, **numbers
+        )
     except (ValueError, LookupError, TypeError, OverflowError, ValidationError) as error:
         reason = f"does not hold the weights of a learned estimator: {one_line(error, 120)}"
         raise StorageError(f"{one_line(path)} {reason}; {TRAINED}") from None

@@ -218,6 +218,20 @@ def check_replaceable(path: Path, replace: bool, *others: Path) -> None:
         raise StorageError("; ".join(words))
 
 
+def refuse_others(path: Path, file: str, what: str) -> None:
+    """Refuses a folder of tactsim without the file by which those are known that a command replaces without asking.
+
+    Raises
+    ------
+    StorageError
+        If the folder holds anything else; ``what`` is what the command calls those that it replaces.
+    """
+    if (path / RESULT_FILE).exists():
+        raise StorageError(f"{one_line(path)} holds a result, which no {what} replaces; choose another folder")
+    if (path / MANIFEST).exists() and not (path / file).exists():
+        raise StorageError(f"{one_line(path)} holds something else than a {what}, which is not replaced; choose another folder")
+
+
 def _is_taken(path: Path) -> bool:
     return os.path.lexists(path) and (path.is_symlink() or not path.is_dir() or any(path.iterdir()))
 
@@ -225,7 +239,8 @@ def _is_taken(path: Path) -> bool:
 def _why_never(path: Path) -> str:
     """Why what stands at a place is never replaced, in words; empty if it may be."""
     if path.is_symlink() or not path.is_dir():
-        return f"the output folder {one_line(path)} exists and is not a folder; choose another place"
+        link = " but a link" if path.is_symlink() else ""
+        return f"the output folder {one_line(path)} exists and is not a folder{link}; choose another place"
     strangers = _foreign(path)
     more = f" and {len(strangers) - 1} more" if len(strangers) > 1 else ""
     advice = "move that away or choose another folder"

@@ -13,7 +13,7 @@ from tactsim.storage.files import beside, naming
 
 @contextmanager
 def only_one(path: Path, refusal: str) -> Iterator[None]:
-    """Keeps other processes out of a place until the block ends; makes the folder around it.
+    """Keeps other processes out of a place until the block ends, by whatever link they name it; makes the folder around it.
 
     Raises
     ------
@@ -22,7 +22,7 @@ def only_one(path: Path, refusal: str) -> Iterator[None]:
     """
     with naming(path):
         path.parent.mkdir(parents=True, exist_ok=True)
-        lock = beside(path, "lock")
+        lock = beside(path.resolve() if path.is_dir() else path, "lock")
         descriptor = _locked(lock, refusal)
     try:
         yield

@@ -97,6 +97,9 @@ def test_a_journal_of_another_program_is_kept(store: Path, tmp_path: Path, capsy
     assert swept(tmp_path, 6, "--resume") == 5
     assert "is no journal of tactsim; move it away" in capsys.readouterr().err
     assert (store / ".journal").read_text() == "dear diary"
+    capsys.readouterr()
+    assert main(["data", "info", str(store)]) == 0
+    assert "is no journal of tactsim; move it away" in capsys.readouterr().out
 
 
 def test_splits_without_a_sample_are_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

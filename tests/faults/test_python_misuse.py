@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import subprocess
 import sys
@@ -31,6 +32,40 @@ if __name__ == "__main__":
         except ts.InputError as error:
             print(error)
 """
+
+
+@pytest.mark.parametrize("limit", [-1, 0, math.nan, [1], True, "0 s"])
+def test_a_time_limit_that_is_no_time_is_refused(limit: object) -> None:
+    with pytest.raises(ts.InputError, match=r"time_limit is .*; needed: a positive number of seconds"):
+        ts.ClosedForm.example().run(None, time_limit=limit)  # type: ignore[arg-type]
+
+
+def test_progress_that_cannot_be_called_is_refused() -> None:
+    with pytest.raises(ts.InputError, match="progress is 3; needed: a function of a step"):
+        ts.ClosedForm.example().run(3)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("name", [3, None, ["icf_stable"], b"icf_stable"])
+def test_names_that_are_no_text_are_refused(name: object) -> None:
+    with pytest.raises(ts.InputError, match="unknown material set"):
+        ts.material(name)  # type: ignore[arg-type]
+    with pytest.raises(ts.InputError, match="read_uniaxial_curve: needed: a path or a text"):
+        ts.read_uniaxial_curve(name)  # type: ignore[arg-type]
+    if name is not None:
+        with pytest.raises(ts.InputError, match="unknown extension point"):
+            ts.kinds(name)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("overrides", [5, b"experiment.points=3", ["experiment.points=3", 5], None])
+def test_overrides_that_are_no_text_are_refused(overrides: object) -> None:
+    with pytest.raises(ts.InputError, match=r"overrides: .*; needed: \{'experiment.recess'"):
+        ts.load_case("annulus_icf", overrides)  # type: ignore[arg-type]
+
+
+def test_an_override_cannot_forge_a_line() -> None:
+    with pytest.raises(ts.InputError) as refused:
+        ts.load_case("annulus_icf", "experiment.recess=3\nerror: forged")
+    assert len(str(refused.value).splitlines()) == 1
 
 
 @pytest.mark.parametrize("number", [10**400, -(10**400)])

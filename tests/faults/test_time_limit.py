@@ -14,10 +14,12 @@ from pretence import CASE_TEXT, Pretence
 from tactsim.cli import main
 from tactsim.deadline import check_time, seconds_left, time_limit
 from tactsim.errors import OutOfTime
+from tactsim.experiments.indentation.indentation_3d import Indentation3D
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.tetrahedra import block_mesh
 from tactsim.results.result import Status, StepRecord
 from tactsim.shipped import CASES
+from tactsim.units import format_quantity
 
 
 def test_every_step_heeds_the_limit():
@@ -25,6 +27,9 @@ def test_every_step_heeds_the_limit():
     stopped = slow.run(time_limit=0.05)
     assert (stopped.status, stopped.status.exit_code) == (Status.FAILED, 3)
     assert stopped.reason == "took longer than the 0.05 s that it was given"
+    in_space = Indentation3D.example().run(None, time_limit=0.01)
+    assert in_space.reason.startswith("took longer than the 0.01 s that it was given; with a larger penetration_tolerance than ")
+    assert format_quantity(Indentation3D.example().tolerance, "m") in in_space.reason
     assert 1 <= len(stopped.steps) < 100
     few = slow.model_copy(update={"steps": 2})
     assert few.run(time_limit=60.0).status is Status.CONVERGED

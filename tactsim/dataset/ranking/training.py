@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
 
@@ -189,4 +189,5 @@ def _with_uncertainty(bare: LearnedWeights, features: Array, targets: Array) -> 
     apart = (scaled[:, :3] * np.linalg.solve(covariance[:3, :3], scaled[:, :3].T).T).sum(axis=1)
     covariance = covariance * float(np.quantile(apart, LEVEL) / scipy.stats.chi2.ppf(LEVEL, 3))
     counted = len(features) // len(list(mirror_images(bare.block_size, bare.layout.rows, bare.layout.columns)))
-    return LearnedWeights(**{**bare.__dict__, "covariance": covariance, "growth": growth, "held_out": counted})
+    error = float(np.median(np.linalg.norm(away[:, :2], axis=1))), float(np.median(np.abs(away[:, 2])))
+    return replace(bare, covariance=covariance, growth=growth, held_out=counted, held_out_error=error)

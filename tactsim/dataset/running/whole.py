@@ -78,7 +78,8 @@ def sweep(
     StorageError
         If the place is taken or cannot be written.
     """
-    from tactsim.dataset.use.card import empty_split_lines, empty_splits, split_counts
+    from tactsim.dataset.use.card import empty_split_lines
+    from tactsim.dataset.use.counts import empty_splits, split_counts
     from tactsim.dataset.use.loading import load
 
     asked = _sweep_of(variation, title, settings | ({} if samples is None else {"samples": samples}))

@@ -73,13 +73,13 @@ def layout_of(sweep: Sweep) -> Layout:
 
 def _check_times(sweep: Sweep, recorder: Recorder, experiment: Any) -> None:
     """Refuses stored times that lie closer to each other than the moments that are computed."""
-    step = recorder.longest_step(experiment)
-    if step and step > (between := experiment.duration / sweep.settings.times) * (1 + ROUND_OFF):
-        apart, computed = (format_quantity(seconds, "s") for seconds in (between, step))
+    steps = recorder.steps(experiment)
+    if steps is not None and steps.longest > (between := steps.end / sweep.settings.times) * (1 + ROUND_OFF):
+        apart, computed = (format_quantity(length, steps.unit) for length in (between, steps.longest))
         raise sweep.error(
             (SECTION, "times"),
             f"{sweep.settings.times}: stored times are {apart} apart, but forces are computed every {computed}, and would lie on "
-            f"straight lines in between; take fewer times, or more steps, such as experiment.time.steps: {sweep.settings.times}",
+            f"straight lines in between; take fewer times, or more steps, such as experiment.{steps.shorter}",
         )
 
 
@@ -92,7 +92,8 @@ def first_case(sweep: Sweep) -> Case:
     CaseError
         If a distribution does not suit its place, or none of the first cases is possible.
     """
-    check_suitable(sweep)
+    if not sweep.checked:
+        check_suitable(sweep)
     fault, last = fault_of(sweep), None
     if fault:
         raise CaseError(fault)

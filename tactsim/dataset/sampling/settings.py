@@ -13,7 +13,8 @@ from tactsim.units import NonNegative, Positive, Time
 
 SCHEMA = "tactsim/sweep/1"
 NO_SPLIT = "none"
-OF_THE_CARD = ("title", "limits")
+LICENCE = "CC-BY-4.0"
+OF_THE_CARD = ("title", "limits", "license")
 """Settings of the card alone."""
 DesignName = Literal["sobol", "latin_hypercube", "random", "grid"]
 """How the unit cube of what varies is covered."""
@@ -94,3 +95,5 @@ class SweepSettings(RecordingSettings):
     """What the data set is, for its card."""
     limits: Annotated[str, Field(max_length=2000)] = ""
     """Known limits, for its card."""
+    license: Annotated[str, Field(pattern=r"^[A-Za-z0-9][A-Za-z0-9.+-]{0,79}$")] = LICENCE
+    """Licence of the data, for its card: an identifier of SPDX, such as CC0-1.0."""

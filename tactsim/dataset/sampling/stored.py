@@ -19,7 +19,6 @@ from tactsim.outside.files import Unreadable
 from tactsim.outside.text import one_line
 from tactsim.results.provenance import PACKAGES
 
-LICENCE = "CC-BY-4.0"
 UNUSABLE = (InputError, ValueError, LookupError, TypeError, AttributeError, ArithmeticError, RuntimeError)
 """What reading a sweep raises on a text that no sweep wrote."""
 
@@ -29,7 +28,6 @@ def attributes_of(sweep: Sweep, layout: Layout) -> dict[str, Any]:
     return {
         **attributes_of_sweep(sweep),
         "description": layout.recorder.describe(),
-        "license": LICENCE,
         "sweep_id": sweep.identity,
         "samples_per_specimen": sweep.per_specimen,
         "seed": sweep.settings.seed,
@@ -45,7 +43,7 @@ def attributes_of(sweep: Sweep, layout: Layout) -> dict[str, Any]:
 def attributes_of_sweep(sweep: Sweep) -> dict[str, Any]:
     """Those that may change when a store is gone on with: the text of the sweep, and what of it the card says."""
     title = sweep.settings.title or str(sweep.document.value.get("title", ""))
-    return {"title": title, "sweep": sweep.text, "limits": sweep.settings.limits}
+    return {"title": title, "sweep": sweep.text, "limits": sweep.settings.limits, "license": sweep.settings.license}
 
 
 def check_same(sweep: Sweep, attributes: dict[str, Any], place: Path) -> None:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 from pydantic import ValidationError
 
 from tactsim.case.model import case_class, experiment_class
@@ -28,18 +30,30 @@ DEPENDENT = {
 """Refusals by pydantic of what other draws may meet: bounds, and keys that belong to another kind."""
 
 Entry = tuple[Any, float]
+BOUNDS = {"greater_than": "gt", "greater_than_equal": "ge", "less_than": "lt", "less_than_equal": "le"}
+"""Refusals of numbers beyond one bound, and what pydantic calls the bound."""
+
+
+@dataclass(frozen=True)
+class Beyond:
+    """A number that was tried at a place, the bounds of the place beyond which it lies, and the refusal in words."""
+
+    number: float
+    bounds: frozenset[tuple[str, float]]
+    reason: str
 
 
 def check_suitable(sweep: Sweep) -> None:
     """Check ends and options of every distribution against the field of its place.
 
-    What is out of bounds, alone or beside the values of other places, is left to the drawing, which draws again: a part of a
-    distribution may well be impossible.
+    What is out of bounds in part, or only beside the values of other places, is left to the drawing, which draws again: a part of
+    a distribution may well be impossible.
 
     Raises
     ------
     CaseError
-        With the distribution and one of its values that has another type, unit or dimension than the place.
+        With the distribution and one of its values that has another type, unit or dimension than the place, or if all its
+        numbers lie beyond the same bound of the place.
     """
     try:
         model = case_class(experiment_class(sweep.kind))
@@ -49,6 +63,7 @@ def check_suitable(sweep: Sweep) -> None:
     entries = {place.path: _tried(place) for place in sweep.places}
     before = {path: _cases_before(path, entries) for path in entries}
     cases = max(before[path] * len(tried) for path, tried in entries.items())
+    beyond: dict[Path, list[Beyond]] = {}
     for case in range(min(cases, MOST_TRIED)):
         drawn = {path: tried[case // before[path] % len(tried)] for path, tried in entries.items()}
         used: dict[Path, float] = {}
@@ -60,8 +75,17 @@ def check_suitable(sweep: Sweep) -> None:
             for path in used:
                 if (in_case := _in_case(path, entries)) in unsuitable and not isinstance(drawn[path][0], dict | list):
                     raise _refused(sweep, path, refusals_of(error, value, model)[in_case]) from None
+                bounds = _bounds_beyond(error, value, in_case)
+                reason = refusals_of(error, value, model)[in_case] if bounds else ""
+                beyond.setdefault(path, []).append(Beyond(drawn[path][1], bounds, reason))
         except TactsimError:
-            continue  # of a whole case, such as a file that is gone
+            used = {}  # of a whole case, such as a file that is gone
+        else:
+            for path in used:
+                beyond.setdefault(path, []).append(Beyond(drawn[path][1], frozenset(), ""))
+    for path, tries in beyond.items():
+        if _has_numbers(path, sweep) and {one.number for one in tries} == {number for _, number in entries[path]}:
+            _refuse_wholly_beyond(sweep, path, tries)
 
 
 def _wrong_in_type(error: ValidationError, value: Any) -> set[Path]:
@@ -74,6 +98,26 @@ def _wrong_in_type(error: ValidationError, value: Any) -> set[Path]:
     return {path for path, of_type in by_place.items() if all(of_type)}
 
 
+def _refuse_wholly_beyond(sweep: Sweep, path: Path, tries: list[Beyond]) -> None:
+    """Refuses numbers of which the least and the largest lie beyond the same bound, and so do all."""
+    if frozenset.intersection(*(one.bounds for one in tries)):
+        raise _refused(sweep, path, f"{tries[0].reason}, which none of its values is")
+
+
+def _bounds_beyond(error: ValidationError, value: Any, path: Path) -> frozenset[tuple[str, float]]:
+    """Bounds for which the value at a path was refused; none if it was refused for anything else too."""
+    refused = [detail for detail in details(error) if path_in_file(detail["loc"], value, str(detail["type"])) == path]
+    if not all(detail["type"] in BOUNDS for detail in refused):
+        return frozenset()
+    return frozenset((detail["type"], float(detail["ctx"][BOUNDS[detail["type"]]])) for detail in refused)
+
+
+def _has_numbers(path: Path, sweep: Sweep) -> bool:
+    """Whether what stands at a path draws numbers, of which the ends were tried, and not options."""
+    drawn = next(place.distribution for place in sweep.places if place.path == path)
+    return not isinstance(drawn, Listed) or drawn.numbers is not None
+
+
 def _tried(place: Place) -> list[Entry]:
     """Entries that stand for all: both ends; of options all, of those that are numbers the ends and a fraction."""
     listed = place.distribution
@@ -82,7 +126,8 @@ def _tried(place: Place) -> list[Entry]:
     numbers = list(range(len(listed.options)))
     if listed.numbers is not None:
         fractions = [number for number in numbers if isinstance(listed.options[number], float)]
-        numbers = sorted({0, len(listed.options) - 1, *fractions[:1]})
+        ends = {int(np.argmin(listed.numbers.values)), int(np.argmax(listed.numbers.values))}
+        numbers = sorted({*ends, *fractions[:1]})
     return [(listed.options[number], float(number)) for number in numbers]
 
 

@@ -19,7 +19,7 @@ from tactsim.case.loading import Place as Where
 from tactsim.case.loading import case_error, read_document
 from tactsim.case.model import SCHEMA as CASE_SCHEMA
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
-from tactsim.dataset.sampling.settings import OF_THE_CARD, SCHEMA, SweepSettings
+from tactsim.dataset.sampling.settings import LICENCE, OF_THE_CARD, SCHEMA, SweepSettings
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.errors import CaseError, InputError, suggestion
 from tactsim.interfaces.distributions import READERS, Distribution, Listed, distribution
@@ -41,6 +41,8 @@ class Sweep:
     """Drawn once per specimen."""
     sample_places: tuple[Place, ...]
     """Drawn for each sample of a specimen."""
+    checked: bool = False
+    """Whether its distributions were held against their places before, as those of a text are that `Sweep.text` wrote."""
 
     @property
     def places(self) -> tuple[Place, ...]:
@@ -57,6 +59,8 @@ class Sweep:
     def text(self) -> str:
         """The whole sweep as canonical JSON; `sweep_of_text` reads it."""
         section = self.settings.model_dump(mode="json") | {"samples": self.samples}
+        if section["license"] == LICENCE:
+            del section["license"]  # so that the text of stores from before there was the key is the same
         return json.dumps({**self.document.value, "schema": SCHEMA, SECTION: section}, sort_keys=True, allow_nan=False)
 
     @property
@@ -128,7 +132,7 @@ def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
         If the text is not that of a sweep.
     """
     document = Document(json.loads(text), folder=None if folder is None else FilePath(folder))
-    return _sweep(document, lambda problem: "the sweep", None, checked=True)
+    return replace(_sweep(document, lambda problem: "the sweep", None, checked=True), checked=True)
 
 
 def _sweep(document: Document, where: Where, samples: int | None, checked: bool = False) -> Sweep:
@@ -198,7 +202,7 @@ def _grid(
         raise _wrong("design", f"the grid has {outer * inner} points; allowed: {MOST_SAMPLES}")
     if wanted not in (None, outer * inner):
         raise _wrong("samples", f"{wanted} asked for, but the grid has {outer * inner} points; leave it out")
-    return Sweep(document, where, settings, outer * inner, inner, *places)
+    return Sweep(document, where, settings, outer * inner, inner, places[0], places[1])
 
 
 def sizes_of(places: tuple[Place, ...]) -> tuple[int, ...]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import DONE, FAILED, META, PENDING
-from tactsim.dataset.store.blocks import JOURNAL, NOT_SUMMED, checksum
+from tactsim.dataset.store.blocks import JOURNAL, NOT_SUMMED, Journal, checksum, decoded, refuse_unfitting
 from tactsim.dataset.store.opening import Store, consolidated_metadata
 from tactsim.errors import StorageError, shown
 from tactsim.interfaces.variable import Variable
@@ -255,6 +255,26 @@ def lost_status(store: Store) -> Array:
     ]
     numbers = np.arange(status.shape[0])
     return numbers[np.isin(numbers // per_chunk, gone)]
+
+
+def waiting_in_journal(store: Store) -> Array:
+    """Numbers (n,) of the samples that are computed and stand in the journal, not yet in the arrays, damaged blocks left out.
+
+    Raises
+    ------
+    StorageError
+        If the journal cannot be read, or another file stands in its place.
+    """
+    variables = [variable for variable in stored_variables(store) if variable.name == "status"]
+    numbers = []
+    for content in Journal(store.path / JOURNAL).blocks():
+        try:
+            block = decoded(content)
+            refuse_unfitting(block, variables, store.samples)
+        except StorageError:
+            continue  # --resume says so, and computes its samples again
+        numbers.append(block["sample"])
+    return np.intersect1d(np.concatenate([np.arange(0), *numbers]), store.pending())
 
 
 def stored_variables(store: Store) -> Iterator[Variable]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -12,11 +12,20 @@ import numpy as np
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.settings import Splits
 from tactsim.dataset.sampling.sweep import Sweep
-from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS
+from tactsim.dataset.store.arrays import PENDING
 from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import refuse_redescribed
-from tactsim.dataset.text_counts import LONGEST_WARNING, TextCounts
+from tactsim.dataset.use.counts import (
+    empty_splits,
+    failures,
+    redrawn,
+    split_counts,
+    split_shares,
+    status_counts,
+    status_lines,
+    warnings_of,
+)
 from tactsim.outside.text import markdown_table, one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
@@ -31,8 +40,6 @@ GENERAL_LIMITS = (
 )
 LIKELY = 0.99
 """Probability with which enough specimens put one into every split."""
-MOST_REASONS = 50
-"""Reasons of failures, and warnings, that are listed; the rest are counted."""
 
 
 def write_card(store: Store, sweep: Sweep, layout: Layout) -> None:
@@ -196,69 +203,13 @@ def description(path: str | Path) -> str:
     attributes = store.attributes
     lines = [one_line(attributes["title"] or path), f"  {one_line(attributes['description'])}"]
     lines += [f"  licence {one_line(attributes['license'], 80)}, sweep {one_line(attributes['sweep_id'], 80)}"]
-    lines += [f"  {name:<28} {count}" for name, count in [*status_counts(store).items(), *split_counts(store).items()]]
+    lines += [*status_lines(store), *(f"  {name:<28} {count}" for name, count in split_counts(store).items())]
     lines += [f"  {count} x {reason}" for reason, count in failures(store)]
     lines += [f"  {count} x warning: {words}" for words, count in warnings_of(store)]
     rows = variable_rows(store)
     name, shape, unit = (max((len(row[k]) for row in rows), default=0) for k in range(3))
     lines += [f"  {row[0]:<{name}}  {row[1]:<{shape}}  {row[2]:<{unit}}  {row[3]}" for row in rows]
     return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check says more" for name in store.missing)])
-
-
-def status_counts(store: Store) -> dict[str, int]:
-    """Samples by status."""
-    status = store.read("status")
-    return {name: int((status == number).sum()) for number, name in enumerate(STATUS)}
-
-
-def split_counts(store: Store) -> dict[str, int]:
-    """Samples that are done by split."""
-    split, status = store.read("split"), store.read("status")
-    names = one_line(store.described["split"].attributes.get("flag_meanings", "")).split()
-    return {name: int(((split == number) & (status == DONE)).sum()) for number, name in enumerate(names)}
-
-
-def empty_splits(counts: Mapping[str, int], splits: Splits) -> list[str]:
-    """Parts of a data set that have a share, or conditions, and no sample that is done."""
-    wanted = [*split_shares(splits), *splits.out_of_distribution]
-    return [name for name in wanted if not counts.get(name)]
-
-
-def split_shares(splits: Splits) -> dict[str, float]:
-    """Share of the specimens of every part that has one."""
-    shares = {"train": splits.train, "validation": splits.validation, "test": 1 - splits.train - splits.validation}
-    return {name: share for name, share in shares.items() if share > 1e-9}  # round-off of the rest
-
-
-def redrawn(store: Store) -> tuple[int, int]:
-    """How many specimens were drawn again because a draw was refused, and the refused draws of all specimens."""
-    computed = store.read("status") != PENDING
-    _, first = np.unique(store.read("specimen")[computed], return_index=True)
-    draws = store.read("redraws")[computed][first].astype(int)
-    refused = draws + (store.read("case_id")[computed][first] == "")  # of a specimen without a case the last one too
-    return int((refused > 0).sum()), int(refused.sum())
-
-
-def failures(store: Store) -> list[tuple[str, int]]:
-    """Reasons of failed samples, those that differ in their numbers only as one, with counts, the most frequent first."""
-    failed = np.flatnonzero(store.read("status") == FAILED)
-    reasons = TextCounts()
-    reasons.update(one_line(reason) for reason in store.read("reason", failed))
-    return _first(reasons, "other reasons")
-
-
-def warnings_of(store: Store) -> list[tuple[str, int]]:
-    """Warnings of samples that are done, with the number of samples, the most frequent first."""
-    counts = TextCounts(LONGEST_WARNING)
-    for text in store.read("warnings", np.flatnonzero(store.read("status") == DONE)):
-        counts.update_of_one(map(one_line, str(text).splitlines()))
-    return _first(counts, "other warnings")
-
-
-def _first(counts: TextCounts, others: str) -> list[tuple[str, int]]:
-    pairs = counts.most_common()
-    rest = sum(count for _, count in pairs[MOST_REASONS:])
-    return pairs[:MOST_REASONS] + ([(others, rest)] if rest else [])
 
 
 def variable_rows(store: Store) -> list[tuple[str, str, str, str]]:

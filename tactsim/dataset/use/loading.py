@@ -32,7 +32,7 @@ def load(
     *,
     split: str | Iterable[str] | None = None,
     failed: bool = False,
-    variables: Iterable[str] | None = None,
+    variables: str | Iterable[str] | None = None,
     verified: bool = False,
 ) -> xarray.Dataset:
     """The samples of a data set, opened lazily.
@@ -68,7 +68,7 @@ def load(
     refuse_redescribed(place)
     whole = dataset_of(place)
     names = [*map(str, whole.data_vars), *place.missing]
-    keep = names if variables is None else list(map(str, variables))
+    keep = names if variables is None else names_in(variables, "variables")
     if unknown := [name for name in keep if name not in names]:
         raise UnknownName("variable", unknown[0], names)
     chosen = chosen_samples(whole, split, failed=failed)
@@ -150,6 +150,21 @@ def dataset_of(store: Store) -> xarray.Dataset:
         return xarray.open_zarr(store.group.store, chunks=None, consolidated=False)
 
 
+def names_in(given: str | Iterable[str], what: str) -> list[str]:
+    """The names that a user gave in Python, one as a text or several; ``what`` they are of begins the message.
+
+    Raises
+    ------
+    InputError
+        If it is neither.
+    """
+    if isinstance(given, str):
+        return [given]
+    if not isinstance(given, Iterable):
+        raise InputError(f"{what}: {shown(given)}; needed: a name, or a list of names")
+    return list(map(str, given))
+
+
 def split_names(dataset: xarray.Dataset) -> list[str]:
     """Names of the parts of a data set."""
     return str(dataset["split"].attrs["flag_meanings"]).split()
@@ -170,7 +185,7 @@ def chosen_samples(dataset: xarray.Dataset, split: str | Iterable[str] | None = 
     status = dataset["status"].values
     chosen = (status == DONE) | (status == FAILED) if failed else status == DONE
     if split is not None:
-        known, wanted = split_names(dataset), [split] if isinstance(split, str) else list(split)
+        known, wanted = split_names(dataset), names_in(split, "split")
         if not wanted:
             raise InputError("split: an empty list; leave it out for all samples")
         for name in wanted:
@@ -191,11 +206,12 @@ class TorchSamples:
         self,
         store: str | Path,
         *,
-        inputs: Sequence[str],
-        targets: Sequence[str] = (),
+        inputs: str | Iterable[str],
+        targets: str | Iterable[str] = (),
         split: str | Iterable[str] | None = None,
         transform: Callable[[dict[str, Any], dict[str, Any]], Any] | None = None,
     ):
+        inputs, targets = names_in(inputs, "inputs"), names_in(targets, "targets")
         whole = load(store, split=split, variables=dict.fromkeys((*inputs, *targets, "status")))
         for name in (*inputs, *targets):
             if whole[name].dtype.kind not in "fiub":

@@ -214,7 +214,8 @@ class ContactCondition(FaceCondition, Displacement):
     side: Side
     """Side from which it comes."""
     at: tuple[Length, ...] | None = None
-    """Where its axis meets the body, in undeformed coordinates; by default the origin."""
+    """Where its axis meets the body, in undeformed coordinates; by default the origin, which is on the axis of a round body and a
+    corner of a block, whose middle is at half its size. A plane needs none."""
     motions: tuple[Motion, ...] = ()
     """Further displacements that are added to it, such as one that slides after the body was pressed."""
 

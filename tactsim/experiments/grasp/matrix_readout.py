@@ -8,7 +8,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, jaws_over_time, over_time
 from tactsim.experiments.grasp.scene import GraspScene, ReadGrasp
-from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings
+from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings, single_step
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS
@@ -47,6 +47,9 @@ class MatrixReadoutRun(Experiment):
         stored = read_basis(self.grasp).result
         scene, times, forces = _read(stored, self.grasp)
         reading = self.readout.read(times, forces, scene.matrix.area)
+        warnings = readout_warnings(self.readout, reading, scene.matrix.area) + _unfinished(stored)
+        if len(times) == 1:
+            warnings += single_step(self.readout, reading, scene.matrix.area)
         voltage, force = reading.filtered.max(axis=(2, 3)), reading.force.sum(axis=(2, 3))
         true = {name: stored.quantities[name] for side in JAWS for name in (f"{TAXEL_FORCE}_{side}", f"{TAXEL_PRESSURE}_{side}")}
         return Course.computed(
@@ -55,7 +58,7 @@ class MatrixReadoutRun(Experiment):
                 rows(self.history_units, (reading.time, *voltage.T, *force.T)),
                 quantities=readout_quantities(reading) | true,
                 assumptions=readout_assumptions(self.readout, scene.matrix.area),
-                warnings=readout_warnings(self.readout, reading, scene.matrix.area) + _unfinished(stored),
+                warnings=warnings,
                 scene=ReadGrasp.of(scene),
             )
         )

@@ -13,7 +13,7 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import lumen_history
 from tactsim.experiments.recording import history
 from tactsim.interfaces import Experiment, Inclusion, Recorder
-from tactsim.interfaces.recording import Values
+from tactsim.interfaces.recording import ComputedSteps, Values
 from tactsim.interfaces.variable import Variable, label, reading
 from tactsim.mechanics.outcome.contact_history import WHOLE_RUN
 from tactsim.registry import kinds
@@ -110,13 +110,14 @@ class GraspRecorder(Recorder):
         variables += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]
         return [*variables, *(reading(name, unit, words, jaw=2) for name, (unit, words) in BESIDE.items())]
 
-    def longest_step(self, experiment: Grasp) -> float:
-        """That of its load steps."""
+    def steps(self, experiment: Grasp) -> ComputedSteps:
+        """Its load steps."""
         from tactsim.experiments.grasp.path import grasp_intervals  # loads the solver
 
         policy = experiment.time.policy(experiment.materials)
         changing = [interval for interval in grasp_intervals(experiment) if interval.changes]
-        return max((policy.largest(interval) for interval in changing), default=0.0)
+        longest = max((policy.largest(interval) for interval in changing), default=0.0)
+        return ComputedSteps(longest, experiment.duration, "s", f"time.steps: {self.settings.times}")
 
     def readings(self, experiment: Grasp, result: Result, generator: np.random.Generator) -> Values:
         """Linear between the accepted steps, from nothing at 0 s; voltages at the last sample before."""

@@ -49,7 +49,8 @@ def indentation_course(setup: IndentationSetup) -> Course:
     """The run of an indentation in any dimension, with a clock or without."""
     path, record = _begun(setup)
     steps = (record.accept(state, event=touch) for state, touch in path.states(record.adapted))
-    return Course(steps, record.findings, setup_is_timed=True)
+    if_slow = setup.if_slow.format(tolerance=format_quantity(setup.tolerance, "m"))
+    return Course(steps, record.findings, setup_is_timed=True, if_slow=if_slow)
 
 
 def unloaded_indentation(setup: IndentationSetup) -> Findings:

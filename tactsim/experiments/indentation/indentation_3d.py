@@ -57,6 +57,9 @@ class Indentation3D(DisplacedSetup, Experiment):
     """A rigid body pressed into a cylindrical specimen in space, its axis anywhere and leaning."""
 
     measure: ClassVar[Measure] = "solid"
+    if_slow: ClassVar[str] = (
+        "; with a larger penetration_tolerance than {tolerance}, a larger mesh.finest or fewer mesh.sectors it takes less"
+    )
     kind: Literal["indentation_3d"] = "indentation_3d"
     offset: NonNegative[Length] = 0.0
     """Distance along x of the body's reference point from the axis of the specimen."""

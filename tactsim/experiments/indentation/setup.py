@@ -98,6 +98,8 @@ class IndentationSetup(FrozenModel):
 
     measure: ClassVar[Measure] = "axisymmetric"
     """What the section stands for."""
+    if_slow: ClassVar[str] = ""
+    """Behind the reason of a run whose time did not suffice: what takes less of it than with ``{tolerance}``."""
     specimen: Specimen
     """The tissue."""
     body: AnyBody = Annulus()

@@ -16,6 +16,7 @@ from tactsim.experiments.annulus.closed_form import ClosedForm
 from tactsim.materials.library import LIBRARY
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.comparison import compared
+from tactsim.results.writing import write_files
 
 CASE = """\
 schema: tactsim/case/1
@@ -84,6 +85,9 @@ def test_no_comparison_replaces_a_result(cases: list[str], capsys: pytest.Captur
     assert main(["run", *cases, "--quiet"]) == 0
     assert main(["compare", "results", "--out", "results/small"]) == 5
     assert "results/small holds a result" in capsys.readouterr().err
+    write_files({"validation.json": b"{}"}, "report")
+    assert main(["compare", "results", "--out", "report"]) == 5
+    assert "report holds something else than a comparison" in capsys.readouterr().err
     Path("comparison.yaml").write_text(Path(cases[0]).read_text())
     assert main(["run", *cases, "comparison.yaml", "--quiet"]) == 2
     assert main(["run", "comparison.yaml", "--quiet"]) == 0

@@ -35,7 +35,10 @@ def test_a_case_that_reads_a_result_runs_as_it_is_written(
     monkeypatch.chdir(tmp_path)
     assert main(["new", kind]) == 0
     assert main(["run", f"{kind}.yaml", "--figures", "none"]) == 0, capsys.readouterr().err
-    assert "warning" not in capsys.readouterr().out
+    warned = [line for line in capsys.readouterr().out.splitlines() if "warning" in line]
+    expected = ["the film creeps"] if kind == "matrix_readout" else []  # the shipped grasp closed in one step
+    assert len(warned) == len(expected)
+    assert all(words in line for words, line in zip(expected, warned, strict=True))
     assert (tmp_path / "results" / kind / "result.json").is_file()
 
 

@@ -10,6 +10,7 @@ import pytest
 from thesis_tables import TABLE, write_tables
 
 from tactsim.cli import main
+from tactsim.results.writing import write_files
 from tactsim.validation import StudyRunner
 
 
@@ -33,6 +34,21 @@ def test_known_deviations_do_not_fail(tmp_path: Path, capsys: pytest.CaptureFixt
         (250.0, pytest.approx(125.0, rel=1e-12), "N/m"),
     ]
     assert "| small | 3 of 3 | 1 | 0 | 0 | 0 | 1 | 0 | 0 | 0 | 1 | 0 |" in (tmp_path / "out" / "validation.md").read_text("utf-8")
+
+
+def test_a_report_takes_the_place_of_an_earlier_one_and_of_nothing_else(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    write_tables(tmp_path / "tables")
+    assert validate(tmp_path, "small") == validate(tmp_path, "small") == 0
+    write_files({"comparison.csv": b"kept"}, tmp_path / "compared")
+    write_files({"result.json": b"{}"}, tmp_path / "run")
+    for name in ("compared", "run"):
+        assert main(["validate", "--from", str(tmp_path / "tables"), "--out", str(tmp_path / name)]) == 5
+        assert not (tmp_path / name / "validation.json").exists()
+    refused = capsys.readouterr().err
+    assert "compared holds something else than a validation report, which is not replaced" in refused
+    assert "run holds a result, which no validation report replaces" in refused
 
 
 def test_the_report_opens_from_disk(tmp_path: Path) -> None:

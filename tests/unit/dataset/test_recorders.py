@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,8 +25,9 @@ from tactsim.experiments.annulus.closed_form import ClosedForm
 from tactsim.experiments.annulus.recorder import ClosedFormRecorder
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.recorder import GraspRecorder
+from tactsim.experiments.indentation.history import UNITS
 from tactsim.experiments.recording import recorder_for
-from tactsim.interfaces import Experiment
+from tactsim.interfaces import Experiment, Recorder
 from tactsim.registry import kinds
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, StepRecord
@@ -54,7 +56,7 @@ def test_a_sweep_of_each_shipped_kind_is_there() -> None:
     assert {path.stem for path in SWEEPS} >= ASKED
 
 
-@pytest.mark.parametrize("kind", ["grasp", "indentation"])
+@pytest.mark.parametrize("kind", ["grasp", "indentation", "indentation_3d", "timed_indentation"])
 def test_a_law_without_a_coefficient_of_friction_is_not_labelled_as_frictionless(kind: str) -> None:
     experiment, recorder = kinds(Experiment)[kind].example(), recorder_for(kind, SweepSettings(samples=1), 2)
     labels = [
@@ -98,6 +100,81 @@ def test_stored_times_closer_than_the_steps_are_refused() -> None:
     assert layout_of(load_sweep(CASES / "sweep_lumps.yaml", (*overrides, "sweep.times=2"))).variables
     with pytest.raises(CaseError, match=r"sweep\.times: 3: stored times are 333.33 ms apart, .*every 500 ms.*steps: 3"):
         layout_of(load_sweep(CASES / "sweep_lumps.yaml", (*overrides, "sweep.times=3")))
+
+
+def pressed(kind: str, steps: int = 8, **recorded: object) -> tuple[Recorder, Experiment, Result]:
+    """A recorder of an indentation, and a run whose displacement grows evenly, its force as the square of it."""
+    experiment, along = kinds(Experiment)[kind].example(), np.arange(1, steps + 1) / steps
+    units = {name: unit for name, unit in UNITS.items() if name in ("displacement", "reaction_force", "tissue_rise", "time")}
+    values = [{"time": 2 * s, "displacement": 1e-3 * s, "reaction_force": s * s, "tissue_rise": 5e-4 * s} for s in along.tolist()]
+    records = tuple(StepRecord(k, 3, 1e-12, {name: one[name] for name in units}) for k, one in enumerate(values))
+    recorder = recorder_for(kind, SweepSettings.model_validate({"samples": 1, "times": 4, **recorded}))
+    return recorder, experiment, Result(kind, Status.CONVERGED, "", {}, steps=records, units=units)
+
+
+@pytest.mark.parametrize("kind", ["indentation", "indentation_3d", "timed_indentation"])
+def test_the_curves_of_an_indentation_are_stored(kind: str) -> None:
+    recorder, experiment, result = pressed(kind)
+    readings = recorder.readings(experiment, result, np.random.default_rng(1))
+    share = np.array([0.25, 0.5, 0.75, 1.0])
+    np.testing.assert_allclose(readings["displacement_history"], 1e-3 * share, rtol=1e-12)
+    np.testing.assert_allclose(readings["reaction_force_history"], share**2, rtol=1e-12)
+    np.testing.assert_allclose(readings["tissue_rise_history"], 5e-4 * share, rtol=1e-12)
+    declared = {variable.name: variable for variable in recorder.readings_of(experiment)}
+    assert {name: np.shape(value) for name, value in readings.items()} == {name: one.sizes for name, one in declared.items()}
+    timed = kind == "timed_indentation"
+    assert declared["reaction_force_history"].dimensions == (("time",) if timed else ("load_step",))
+    assert declared["displacement_history"].prescribed
+    if timed:
+        np.testing.assert_allclose(readings["time_s"], 2 * share, rtol=1e-12)
+
+
+def test_the_force_of_a_timed_indentation_is_read_over_time() -> None:
+    recorder, experiment, result = pressed("timed_indentation", steps=400, reading={"chain": {"sampling_rate": 200}})
+    readings = recorder.readings(experiment, result, np.random.default_rng(1))
+    assert {name for name in readings if name.startswith("read_force")} == {"read_force", "read_force_clean"}
+    assert (np.diff(readings["read_force_clean"]) > 0).all()
+    assert {one.name: one.sizes for one in recorder.readings_of(experiment)} == {name: v.shape for name, v in readings.items()}
+
+
+def test_an_indentation_of_which_the_end_is_stored_has_no_curves() -> None:
+    recorder, experiment, result = pressed("indentation", times=1)
+    assert recorder.readings(experiment, result, np.random.default_rng(1)) == {}
+    assert recorder.readings_of(experiment) == []
+
+
+def test_the_curve_of_a_body_without_a_hole_holds_no_rise() -> None:
+    recorder, experiment, result = pressed("indentation")
+    units = {name: unit for name, unit in result.units.items() if name != "tissue_rise"}
+    steps = tuple(replace(step, values={name: step.values[name] for name in units}) for step in result.steps)
+    readings = recorder.readings(experiment, replace(result, steps=steps, units=units), np.random.default_rng(1))
+    assert np.isnan(readings["tissue_rise_history"]).all()
+    optional = {one.name for one in recorder.readings_of(experiment) if one.optional}
+    assert optional == {"tissue_rise_history"}
+
+
+TIMED = """\
+schema: tactsim/sweep/1
+experiment:
+  kind: timed_indentation
+  specimen: {material: atrial, thickness: {uniform: [9 mm, 11 mm]}, radius: 15 mm}
+  time: {per_decade: PER_DECADE}
+  loading: {control: displacement, pieces: [{kind: ramp, to: 0.1 mm, duration: 1 s}, {kind: hold, duration: 1 s}]}
+sweep: {samples: 3, times: 100}
+"""
+
+
+def test_stored_times_of_indentations_closer_than_their_steps_are_refused_with_what_helps(tmp_path: Path) -> None:
+    overrides = ("sweep.samples=3", "experiment.displacement=4 mm", "experiment.body.outer_radius=3 mm")
+    with pytest.raises(CaseError, match=r"sweep\.times: 50: stored times are 80 µm apart, .*every 150 µm.*largest: 80 µm"):
+        layout_of(load_sweep(CASES / "sweep_annulus.yaml", (*overrides, "sweep.times=50")))
+    finer = load_sweep(CASES / "sweep_annulus.yaml", (*overrides, "sweep.times=50", "experiment.steps.largest=80 um"))
+    assert layout_of(finer).named("reaction_force_history").sizes == (50,)
+    (tmp_path / "sweep.yaml").write_text(TIMED.replace("PER_DECADE", "5"), encoding="utf-8")
+    with pytest.raises(CaseError, match=r"stored times are 20 ms apart, .*every 50 ms.*time.per_decade: 114"):
+        layout_of(load_sweep(tmp_path / "sweep.yaml"))
+    (tmp_path / "sweep.yaml").write_text(TIMED.replace("PER_DECADE", "114"), encoding="utf-8")
+    assert layout_of(load_sweep(tmp_path / "sweep.yaml")).named("time_s").sizes == (100,)
 
 
 def test_the_closed_form_is_stored_as_it_is_between_its_points() -> None:

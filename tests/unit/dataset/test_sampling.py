@@ -11,7 +11,8 @@ from sweeps import TEXT, sweep_file
 
 from tactsim.dataset.running.computing import computed
 from tactsim.dataset.sampling.drawing import design_point, drawn_specimen
-from tactsim.dataset.sampling.layout import layout_of
+from tactsim.dataset.sampling.layout import first_case, layout_of
+from tactsim.dataset.sampling.suitable import check_suitable
 from tactsim.dataset.sampling.sweep import Sweep, load_sweep, sweep_of_text
 from tactsim.dataset.store.blocks import decoded
 from tactsim.errors import CaseError
@@ -199,9 +200,38 @@ def test_a_distribution_that_does_not_suit_its_place_is_refused_before_anything_
 
 
 @pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("{uniform: [1 mm, 2.5 mm]}", "{uniform: [-3 mm, -1 mm]}", "6: experiment.inner_radius: .* at least 0 m, which none"),
+        ("{uniform: [1 mm, 2.5 mm]}", "{values: [-1 mm, -3 mm, -2 mm]}", "inner_radius: .* at least 0 m, which none"),
+        ("{uniform: [1 mm, 2.5 mm]}", "{choice: [1 mm, {uniform: [-3 mm, -1 mm]}]}", "inner_radius.choice.1: .* which none"),
+        ("points: 5", "points: {integer: [-5, 1]}", "12: experiment.points: .* which none"),
+    ],
+)
+def test_a_distribution_wholly_out_of_bounds_is_refused_before_anything_is_drawn(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    assert old in TEXT
+    with pytest.raises(CaseError, match=words):
+        check_suitable(sweep_of(tmp_path, TEXT.replace(old, new)))
+
+
+def test_workers_do_not_hold_the_distributions_against_their_places_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    checked: list[Sweep] = []
+    monkeypatch.setattr("tactsim.dataset.sampling.layout.check_suitable", checked.append)
+    sweep = sweep_of(tmp_path, TEXT.replace("A small sweep", "Of workers"))
+    first_case(sweep)
+    computed(sweep.text, [0])
+    assert checked == [sweep]
+
+
+@pytest.mark.parametrize(
     ("old", "new"),
     [
         ("{uniform: [1 mm, 2.5 mm]}", "{uniform: [-1 mm, 2.5 mm]}"),
+        ("{uniform: [1 mm, 2.5 mm]}", "{values: [-1 mm, 2 mm, -2 mm]}"),
         ("{uniform: [1 mm, 2.5 mm]}", "{normal: [2 mm, 1 mm]}"),
         ("kind: ramp, to", "kind: {choice: [ramp, hold]}, to"),
         ("points: 5", "points: {integer: [1, 9]}"),

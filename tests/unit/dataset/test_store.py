@@ -35,7 +35,8 @@ from tactsim.dataset.sampling.sweep import Sweep, load_sweep
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import chunk_samples, set_attributes
-from tactsim.dataset.use.card import redrawn, split_counts
+from tactsim.dataset.use.card import description
+from tactsim.dataset.use.counts import redrawn, split_counts
 from tactsim.dataset.use.loading import load
 from tactsim.errors import CaseError, InputError, StorageError, TactsimError
 from tactsim.interfaces.variable import Variable
@@ -154,9 +155,13 @@ def test_an_existing_store_needs_resume_and_the_same_sweep(whole: Path, tmp_path
     with pytest.raises(StorageError, match="would lose some"):
         run_sweep(load_sweep(sweep_file(tmp_path), samples=12), place, resume=True)
     run_sweep(load_sweep(sweep_file(tmp_path), samples=30), place, resume=True)
-    retold = TEXT.replace("times: 4", "times: 4\n  title: Told anew\n  limits: None known\n  time_limit: 1 min")
+    retold = TEXT.replace(
+        "times: 4", "times: 4\n  title: Told anew\n  limits: None known\n  license: CC0-1.0\n  time_limit: 1 min"
+    )
     run_sweep(load_sweep(sweep_file(tmp_path, retold), samples=30), place, resume=True)
-    assert [Store.open(place).attributes[name] for name in ("title", "limits")] == ["Told anew", "None known"]
+    assert [Store.open(place).attributes[name] for name in ("title", "limits", "license")] == [
+        *("Told anew", "None known", "CC0-1.0"),
+    ]
     longer = content(place)
     for name, values in content(whole).items():
         np.testing.assert_array_equal(values, longer[name][:24], err_msg=name)
@@ -227,10 +232,27 @@ def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path
         patch.setattr(running, "write", full)
         with pytest.raises(StorageError, match="no room"):
             going.compute(Inline(sweep), lambda tally: None)
-    assert [finding.kind for finding in check(place).findings] == ["missing", "unfinished"]
+    findings, waiting = check(place).findings, int(going.tally.done)
+    assert [finding.kind for finding in findings] == ["missing", "unfinished"]
+    assert f"24 samples are not in the arrays, {waiting} of them computed and in the journal" in findings[0].words
+    lines = description(place).splitlines()
+    assert f"pending {24 - waiting}" in [" ".join(line.split()) for line in lines]
+    assert any(line.split()[:2] == ["waiting", f"{waiting}"] for line in lines)
     with opened_run(sweep, place, resume=True, accept_changes=True):
         pass
     assert_same(whole, place)
+
+
+def test_a_store_that_is_written_is_in_use_by_whatever_link_it_is_named(tmp_path: Path) -> None:
+    sweep, place, link = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr", tmp_path / "link.zarr"
+    link.symlink_to(place)
+    with opened_run(sweep, place):
+        for other in (place, link):
+            with (
+                pytest.raises(StorageError, match="in use by another sweep"),
+                opened_run(sweep, other, resume=True, accept_changes=True),
+            ):
+                pass
 
 
 def test_a_lost_worker_costs_a_try_and_at_last_only_the_sample_that_kills(whole: Path, tmp_path: Path) -> None:

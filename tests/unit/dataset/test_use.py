@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow.parquet
 import pytest
 from fork_server import forked_python
-from sweeps import compute_once_here, sweep_file
+from sweeps import TEXT, compute_once_here, sweep_file
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, checking, load, sample_case
@@ -30,7 +30,8 @@ from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import ChunkRead
 from tactsim.dataset.text_counts import TextCounts
-from tactsim.dataset.use.card import description, failures
+from tactsim.dataset.use.card import description
+from tactsim.dataset.use.counts import failures
 from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.interfaces.variable import Variable, reading
 from tactsim.storage.building import MARK
@@ -68,6 +69,16 @@ def test_unknown_names_are_refused(kept: Path, tmp_path: Path) -> None:
         load(kept, split=[])
     with pytest.raises(StorageError, match=r"holds no zarr\.json"):
         load(tmp_path)
+
+
+def test_one_name_stands_for_a_list_of_it_and_no_name_is_refused(kept: Path) -> None:
+    assert list(load(kept, variables="force").data_vars) == ["force"]
+    assert TorchSamples(kept, inputs="read_force", targets="inner_radius").inputs == ("read_force",)
+    for given in ({"variables": 3}, {"split": 3}):
+        with pytest.raises(InputError, match=rf"{next(iter(given))}: 3; needed: a name, or a list of names"):
+            load(kept, **given)  # type: ignore[arg-type]
+    with pytest.raises(InputError, match=r"inputs: 3; needed: a name"):
+        TorchSamples(kept, inputs=3)  # type: ignore[arg-type]
 
 
 def test_a_whole_store_has_no_findings(kept: Path) -> None:
@@ -252,7 +263,8 @@ def test_reading_needs_no_torch_and_no_dask() -> None:
 
 def test_a_sweep_by_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     compute_once_here(monkeypatch)
-    case, place = str(sweep_file(tmp_path)), str(tmp_path / "s.zarr")
+    text = TEXT.replace("times: 4", "times: 4\n  license: CC0-1.0")
+    case, place = str(sweep_file(tmp_path, text)), str(tmp_path / "s.zarr")
     assert main(["sweep", case, "--out", place, "--samples", "6", "--workers", "1", "--progress"]) == 0
     out, err = capsys.readouterr()
     assert out.startswith("6 samples done, 0 failed in ")
@@ -265,7 +277,7 @@ def test_a_sweep_by_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyP
     assert Path(place, "figures", "spread.png").read_bytes().startswith(b"\x89PNG")
     card = Path(place, "README.md").read_text(encoding="utf-8")
     for part in (
-        "license: cc-by-4.0",
+        "license: cc0-1.0",
         "Design sobol, seed 7, 6 samples",
         "| done | 6 |",
         "| softer | ",

@@ -14,6 +14,7 @@ from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.estimators.learned import LearnedEstimator
 from tactsim.localization.networks import LearnedWeights, Network, inputs, read_weights
+from tactsim.units import format_quantity
 
 PLAIN = np.full((2, 3, 3), 0.3)
 
@@ -130,6 +131,14 @@ def test_training_finds_lumps_and_needs_enough(tmp_path, monkeypatch):
     monkeypatch.setattr(training, "COPIES", 1)
     table = response()
     trained = training.trained(made_samples(48, table, seed=2), table)
+    plan, height = trained.held_out_error
+    assert 0 < plan < 10e-3
+    assert 0 < height < 10e-3
+    assert (
+        f"{trained.held_out} lumps held out, which are in the median {format_quantity(float(f'{plan:.2g}'), 'm')} off"
+        in trained.summary()
+    )
+    assert read_weights(kept(tmp_path, trained)).summary().endswith("lumps held out")
     judged = made_samples(40, table, seed=5)
     numbers = measures(outcomes(LearnedEstimator.checked(kept(tmp_path, trained)), judged, None), SIZE)
     guess = np.median([np.hypot(*(np.array(t.center)[:2] - 20e-3)) for t in judged.truths if t.present])

@@ -55,6 +55,16 @@ def test_a_film_that_creeps_is_warned_of_where_one_step_is_read():
         assert len(result.steps) == steps
 
 
+def test_a_stored_grasp_of_one_step_is_warned_of_as_that_of_a_run_is(tmp_path):
+    for steps in (1, 2):
+        grasp = Grasp.example().model_copy(update={"readout": READOUT, "time": {"steps": steps}}).run()
+        write_result(grasp, tmp_path / f"{steps}", case_id="0" * 16, provenance={})
+        again = MatrixReadoutRun(grasp=str(tmp_path / f"{steps}"), readout=READOUT).run()
+        warned = [[text for text in result.warnings if "the film creeps" in text] for result in (grasp, again)]
+        assert warned[0] == warned[1]
+        assert len(warned[1]) == (steps == 1)
+
+
 def test_without_a_readout_a_grasp_ends_at_the_forces():
     result = Grasp.example().run()
     assert "voltage_upper" not in result.quantities

@@ -1,0 +1,89 @@
+"""What is counted of a data set: samples by status and by split, redraws, failures and warnings."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+
+from tactsim.dataset.sampling.settings import Splits
+from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.verifying import waiting_in_journal
+from tactsim.dataset.text_counts import LONGEST_WARNING, TextCounts
+from tactsim.errors import StorageError
+from tactsim.outside.text import one_line
+
+MOST_REASONS = 50
+"""Reasons of failures, and warnings, that are listed; the rest are counted."""
+
+
+def status_lines(store: Store) -> list[str]:
+    """Samples by status, and those that are computed and not yet in the arrays, which count as neither pending nor done."""
+    try:
+        waiting, note = len(waiting_in_journal(store)), ""
+    except StorageError as error:
+        waiting, note = 0, f"  {error}"
+    counts = status_counts(store)
+    counts["pending"] -= waiting
+    lines = [f"  {name:<28} {count}" for name, count in counts.items()]
+    if waiting:
+        words = "computed, in the journal, not yet in the arrays: a sweep is running, or was killed, and --resume brings them in"
+        lines.append(f"  {'waiting':<28} {waiting}  {words}")
+    return [*lines, note] if note else lines
+
+
+def status_counts(store: Store) -> dict[str, int]:
+    """Samples by status."""
+    status = store.read("status")
+    return {name: int((status == number).sum()) for number, name in enumerate(STATUS)}
+
+
+def split_counts(store: Store) -> dict[str, int]:
+    """Samples that are done by split."""
+    split, status = store.read("split"), store.read("status")
+    names = one_line(store.described["split"].attributes.get("flag_meanings", "")).split()
+    return {name: int(((split == number) & (status == DONE)).sum()) for number, name in enumerate(names)}
+
+
+def empty_splits(counts: Mapping[str, int], splits: Splits) -> list[str]:
+    """Parts of a data set that have a share, or conditions, and no sample that is done."""
+    wanted = [*split_shares(splits), *splits.out_of_distribution]
+    return [name for name in wanted if not counts.get(name)]
+
+
+def split_shares(splits: Splits) -> dict[str, float]:
+    """Share of the specimens of every part that has one."""
+    shares = {"train": splits.train, "validation": splits.validation, "test": 1 - splits.train - splits.validation}
+    return {name: share for name, share in shares.items() if share > 1e-9}  # round-off of the rest
+
+
+def redrawn(store: Store) -> tuple[int, int]:
+    """How many specimens were drawn again because a draw was refused, and the refused draws of all specimens."""
+    computed = store.read("status") != PENDING
+    _, first = np.unique(store.read("specimen")[computed], return_index=True)
+    draws = store.read("redraws")[computed][first].astype(int)
+    refused = draws + (store.read("case_id")[computed][first] == "")  # of a specimen without a case the last one too
+    return int((refused > 0).sum()), int(refused.sum())
+
+
+def failures(store: Store) -> list[tuple[str, int]]:
+    """Reasons of failed samples, those that differ in their numbers only as one, with counts, the most frequent first."""
+    failed = np.flatnonzero(store.read("status") == FAILED)
+    reasons = TextCounts()
+    reasons.update(one_line(reason) for reason in store.read("reason", failed))
+    return _first(reasons, "other reasons")
+
+
+def warnings_of(store: Store) -> list[tuple[str, int]]:
+    """Warnings of samples that are done, with the number of samples, the most frequent first."""
+    counts = TextCounts(LONGEST_WARNING)
+    for text in store.read("warnings", np.flatnonzero(store.read("status") == DONE)):
+        counts.update_of_one(map(one_line, str(text).splitlines()))
+    return _first(counts, "other warnings")
+
+
+def _first(counts: TextCounts, others: str) -> list[tuple[str, int]]:
+    pairs = counts.most_common()
+    rest = sum(count for _, count in pairs[MOST_REASONS:])
+    return pairs[:MOST_REASONS] + ([(others, rest)] if rest else [])
