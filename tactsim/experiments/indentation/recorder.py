@@ -188,14 +188,16 @@ class TimedIndentationRecorder(PressedBodyRecorder):
         """Which of the curves the case prescribes."""
         return "displacement" if experiment.loading.control == "displacement" else "reaction_force"
 
-    def steps(self, experiment: TimedIndentation) -> ComputedSteps:
-        """Its load steps, and its stops in time where these are closer."""
+    def steps(self, experiment: TimedIndentation) -> ComputedSteps | None:
+        """Its load steps, and its stops in time where these are closer; None if what is prescribed only jumps."""
         loading, policy = experiment.loading, experiment.drive().policy
         changing = [one for one in smooth_intervals([loading.history()], loading.duration) if one.changes]
+        if not changing:
+            return None
         gaps = [min(policy.largest(one), float(np.diff([one.start, *policy.stops(one)]).max())) for one in changing]
-        apart, piece = loading.duration / self.settings.times, max((one.duration for one in changing), default=np.inf)
+        apart, piece = loading.duration / self.settings.times, max(one.duration for one in changing)
         per_decade = math.ceil(-1 / math.log10(1 - min(apart / piece, 0.9)))
-        return ComputedSteps(max(gaps, default=0.0), loading.duration, "s", f"time.per_decade: {per_decade}")
+        return ComputedSteps(max(gaps), loading.duration, "s", f"time.per_decade: {per_decade}")
 
     def describe(self) -> str:
         """What is simulated."""
