@@ -1,5 +1,5 @@
-"""A viscoelastic cube under sudden loads: it creeps to a stretch of six and is unloaded at once, or is pulled at once by four times
-its modulus, where Newton finds another equilibrium before that of the uniform cube.
+"""A viscoelastic cube under sudden loads: it creeps to a stretch of six and is unloaded at once, or is pulled at once by four
+times its modulus, where Newton finds another equilibrium before that of the uniform cube.
 
 Reference: the equilibrium of the incompressible cube as an ordinary differential equation of its stretch, solved outside the
 project to 1e-6. Mutants: the stretch before the unloading ends, and a load lower by a hundredth.

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.boundary_value.branching import lowering_motions, unstable_in_words
+from tactsim.experiments.boundary_value.branching import unstable_in_words
 from tactsim.experiments.boundary_value.conditions import SIDES
 from tactsim.experiments.boundary_value.limit_load import LimitLoad
 from tactsim.experiments.boundary_value.posing import PosedProblem, posed
@@ -210,7 +210,7 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     def warnings(self) -> list[str]:
         """Warnings about volumes and ellipticity, about an unstable end, and about rigid bodies that never touched."""
         together = zip(self.problem.contacts, self._touched, strict=True)
-        unstable = unstable_in_words(lowering_motions(*self._kept["last"]))
+        unstable = unstable_in_words(*self._kept["last"])
         return [
             *super().warnings(),
             *([unstable] if unstable else []),
