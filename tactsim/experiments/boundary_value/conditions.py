@@ -107,18 +107,24 @@ class PointCondition(Condition, Displacement):
 
 
 class RotationCondition(FaceCondition):
-    """A face that turns about an axis along z, its shape in the plane kept; in 3D it is held along z, or free to warp.
+    """A face that turns about an axis along z, its shape in the plane kept or free to change; in 3D it is held along z, or free.
 
-    In plane strain the axis stands on the plane: two faces that turn against each other bend the body between them.
+    In plane strain the axis stands on the plane: two faces that turn against each other bend the body between them. On an
+    axisymmetric body a face of the section turns in the plane of r and z, such as half a turn of both ends of a tube everts it.
     """
 
     kind: Literal["rotation"]
     angle: Angle
-    """Angle, right-handed."""
+    """Angle, right-handed; from r towards z on an axisymmetric body."""
     axial: Literal["held", "free"] = "held"
     """Whether in 3D the points of the face keep their heights, as if glued to a rigid plate, or each moves freely along z."""
     about: tuple[Length, Length] = (0.0, 0.0)
-    """Coordinates x and y of the axis, such as the middle of a block, which has a corner at the origin."""
+    """Coordinates x and y of the axis, such as the middle of a block, which has a corner at the origin; r and z on an
+    axisymmetric body."""
+    sliding: Literal["none", "in_plane", "radial"] = "none"
+    """How the points of the face may move on what turns them: not at all, as if glued to a rigid plate; without friction in the
+    plane of the face, which must be flat, so that the ends of a bent strip may thin; or towards the axis and away from it, each
+    at its angle, so that a tube may widen as it is twisted."""
 
 
 class PressureCondition(FaceCondition):

@@ -217,10 +217,9 @@ class BoundaryValueSetup(FrozenModel):
 
 def _check_turn(condition: RotationCondition, dimension: str) -> None:
     """Check that a face can turn so."""
-    if dimension == "axisymmetric":
-        raise ValueError(": a face turns about z in 3d and in plane_strain only")
-    if dimension == "plane_strain" and condition.axial == "free":
-        raise ValueError(".axial: no face of a body in plane_strain moves along z")
+    if dimension != "3d" and condition.axial == "free":
+        along = "z" if dimension == "plane_strain" else "the circle that it turns about"
+        raise ValueError(f".axial: no face of a body in {dimension} moves along {along}")
 
 
 def _check_touch(parts: Parts, contact: ContactCondition) -> None:
