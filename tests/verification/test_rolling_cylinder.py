@@ -35,7 +35,9 @@ def test_the_whole_is_pressed_as_its_quarter_is(one_thread):
     def check(quarter):
         assert 2 * quarter == pytest.approx(whole, rel=1e-5), "the penetration allowed over the approach is 2e-5 times a half"
 
-    quarters = [between_plates("quarter", [{"side": "top", "y": -approach}], force)["force"] for approach in (PRESSED / 2, PRESSED)]
+    quarters = [
+        between_plates("quarter", [{"side": "top", "y": -approach}], force)["force"] for approach in (PRESSED / 2, PRESSED)
+    ]
     check(quarters[0])
     assert_kills(check, all_of_it=(quarters[1],))
 

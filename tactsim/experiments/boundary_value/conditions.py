@@ -87,9 +87,32 @@ class Displacement(Components):
 
 
 class DisplacementCondition(FaceCondition, Displacement):
-    """Prescribed components of the displacement of a face."""
+    """Prescribed components of the displacement of a face, the same everywhere or linear in the undeformed coordinates.
+
+    With the same linear displacements on every face but those across it, a block is sheared or stretched evenly.
+    """
 
     kind: Literal["displacement"]
+    slopes: dict[str, dict[str, float]] = {}
+    """By how much a given component grows per length along a coordinate, such as ``x: {y: 0.5}``; the component itself is then
+    that of a point at the origin."""
+
+    def slopes_along(self, axes: tuple[str, ...]) -> dict[int, list[float]]:
+        """Number of the axis -> slopes along all coordinates, of every given component.
+
+        Raises
+        ------
+        ValueError
+            As ``along`` does, or if a slope is that of a component that is not given, or along no coordinate; the message begins
+            with its key.
+        """
+        given = self.along(axes)
+        for name, slopes in self.slopes.items():
+            if name not in axes or axes.index(name) not in given:
+                raise ValueError(f"slopes.{name}: the component {name} is not given; give it, too: that of a point at the origin")
+            if unknown := [along for along in slopes if along not in axes]:
+                raise ValueError(f"slopes.{name}: there is no coordinate {', '.join(unknown)}; allowed: {', '.join(axes)}")
+        return {axis: [self.slopes.get(axes[axis], {}).get(name, 0.0) for name in axes] for axis in given}
 
 
 class ClampCondition(FaceCondition):

@@ -66,8 +66,10 @@ def _prescribed(name: str, condition: AnyCondition, parts: Parts) -> list[Prescr
         return [Translation(name, np.array([mesh.dim * node + axis]), value) for axis, value in given.items()]
     facets = parts.facets(condition)
     if isinstance(condition, DisplacementCondition):
-        given = condition.along(parts.axes)
-        return [Translation(name, _unknowns(mesh.dim, facets, axis), value) for axis, value in given.items()]
+        given, slopes, places = condition.along(parts.axes), condition.slopes_along(parts.axes), mesh.nodes[np.unique(facets)]
+        return [
+            Translation(name, _unknowns(mesh.dim, facets, axis), value + places @ slopes[axis]) for axis, value in given.items()
+        ]
     if isinstance(condition, ClampCondition):
         return [Translation(name, _unknowns(mesh.dim, facets, axis), 0.0) for axis in range(mesh.dim)]
     if isinstance(condition, RotationCondition):

@@ -33,15 +33,15 @@ class PrescribedMotion(Protocol):
 
 @dataclass(frozen=True)
 class Translation:
-    """The ``unknowns`` (k,) all move by ``distance`` in m times the factor."""
+    """The ``unknowns`` (k,) move by ``distance`` in m, of all or (k,) of each, times the factor."""
 
     name: str
     unknowns: Array
-    distance: float
+    distance: float | Array
 
     def values(self, factor: float) -> Array:
         """Displacements (k,) in m."""
-        return np.full(len(self.unknowns), factor * self.distance)
+        return np.broadcast_to(factor * self.distance, len(self.unknowns))
 
 
 @dataclass(frozen=True)

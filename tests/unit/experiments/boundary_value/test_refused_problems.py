@@ -148,6 +148,14 @@ def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
             {"dimension": "axisymmetric", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0, "axial": "free"}]},
             "conditions.0.axial: no face of a body in axisymmetric moves along the circle",
         ),
+        (
+            {"conditions": [{"kind": "displacement", "face": "top", "x": 0.0, "slopes": {"y": {"x": 0.5}}}]},
+            "conditions.0.slopes.y: the component y is not given",
+        ),
+        (
+            {"conditions": [{"kind": "displacement", "face": "top", "x": 0.0, "slopes": {"x": {"r": 0.5}}}]},
+            "conditions.0.slopes.x: there is no coordinate r; allowed: x, y, z",
+        ),
         ({"geometry": ROD, "conditions": [TURNED | {"face": "outer"}]}, "conditions.0.sliding: the face outer is not flat"),
         ({"geometry": BRICK, "conditions": [TURNED]}, "conditions.0.sliding: the plane of top stands across the axis"),
         (
