@@ -1,4 +1,4 @@
-"""Simple shear of a block whose faces are all displaced linearly, with its normal stresses, and an even stretch."""
+"""Faces that are displaced linearly: simple shear with its normal stresses, an even stretch, a bore that widens."""
 
 from __future__ import annotations
 
@@ -62,3 +62,38 @@ def test_a_block_is_moved_and_stretched_evenly(one_thread):
         about_the_middle=((1e-3 - 0.1 * SIDE, -0.05 * SIDE, 0.0), (1e-3 + 0.1 * SIDE, -0.05 * SIDE, thicker)),
         none_across=((1e-3, 0.0, 0.0), (1e-3 + 0.2 * SIDE, 0.0, thicker)),
     )
+
+
+def test_a_bore_that_is_widened_pushes_the_outer_face_away(one_thread, verification_record):
+    """A displacement in proportion to the place is radial; r^3 grows everywhere by as much. Mutants: a tube, whose r^2 does, and
+    an outer face that moves as far as the inner one."""
+    inner, outer, wider = 2e-3, 5e-3, 0.4
+
+    def widened(cells):
+        radial = {"r": {"r": wider}, "z": {"z": wider}}
+        found = numbers(
+            dimension="axisymmetric",
+            geometry={
+                "kind": "ball",
+                "inner_radius": inner,
+                "radial": [{"length": outer - inner, "cells": cells}],
+                "around": 2 * cells,
+            },
+            conditions=[{"kind": "displacement", "face": "inner", "r": 0.0, "z": 0.0, "slopes": radial}],
+            asked={"away": {"kind": "displacement", "at": [outer, 0.0], "component": "r"}},
+        )
+        return found["away"]
+
+    def grown(power):
+        return (outer**power + inner**power * ((1 + wider) ** power - 1)) ** (1 / power) - outer
+
+    coarse, fine = widened(3), widened(6)
+
+    def check(away):
+        assert fine == pytest.approx(away, rel=1e-4), "third order: an eighth of the error of cells twice as large"
+
+    check(grown(3))
+    assert abs(coarse / grown(3) - 1) > 6 * abs(fine / grown(3) - 1)
+    known = {"reference": "kept volume", "kind": "exact", "mesh": "6 x 12 cells", "tolerance": 1e-4}
+    verification_record("outer face of a hollow sphere whose bore widens", fine, grown(3), **known)
+    assert_kills(check, tube=(grown(2),), as_far=(wider * inner,))
