@@ -24,7 +24,7 @@ from tactsim.experiments.boundary_value.parts import AT_NODE, Parts
 from tactsim.interfaces import Material
 from tactsim.materials.mirrored import check_in_plane, law_mirrors
 
-ELSEWHERE = "take a geometry without this plane, such as part: whole of a cylinder"
+ELSEWHERE = "take a geometry without this plane, such as part: whole of a round body"
 
 
 def check_material(parts: Parts, material: Material) -> None:
