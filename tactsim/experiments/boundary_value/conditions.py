@@ -25,6 +25,10 @@ class Amplitude(Loading):
     """Ramps, jumps, holds, sines or samples of the factor; 1 is the condition as it is written."""
 
 
+Within = dict[str, tuple[Length, Length]]
+"""Two values of some coordinates, by their names."""
+
+
 class Condition(FrozenModel):
     """Something prescribed that follows a course in time."""
 
@@ -37,10 +41,10 @@ class FaceCondition(Condition):
 
     face: str
     """Name of the face, as the geometry has it."""
-    within: dict[str, tuple[Length, Length]] | None = None
+    within: Within | None = None
     """The part of the face between two values of a coordinate, such as ``{r: [0 mm, 1 mm]}``; by default all of it.
 
-    A round body has the distance ``r`` from its axis in 3D, too."""
+    A round body has the distance ``r`` from its axis in 3D and in plane strain, too."""
 
 
 class Components(FrozenModel):

@@ -156,6 +156,12 @@ def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
             {"conditions": [{"kind": "displacement", "face": "top", "x": 0.0, "slopes": {"x": {"r": 0.5}}}]},
             "conditions.0.slopes.x: there is no coordinate r; allowed: x, y, z",
         ),
+        (
+            {"regions": [{"within": {"x": [2 * SIDE, 3 * SIDE]}, "material": RUBBER}]},
+            r"regions.0.within: .* holds no cell; let cells end",
+        ),
+        ({"regions": [{"within": {"x": [0.0, 0.7 * SIDE]}, "material": RUBBER}]}, "regions.0.within: .* ends within cells"),
+        ({"regions": [{"within": {"r": [0.0, SIDE]}, "material": RUBBER}]}, "within: there is no coordinate r; allowed: x, y, z"),
         ({"geometry": ROD, "conditions": [TURNED | {"face": "outer"}]}, "conditions.0.sliding: the face outer is not flat"),
         ({"geometry": BRICK, "conditions": [TURNED]}, "conditions.0.sliding: the plane of top stands across the axis"),
         (
