@@ -21,14 +21,12 @@ class Refinement:
     ----------
     mesh : the children; their nodes lie on the geometry of their parents
     nodal : (n_new, n_old) values of a P2 field at the new nodes from the old nodal values: exact, the spaces are nested
-    corner : (c_new, c_old) the same for a P1 field on the corners
     parents : (E_new,) number of the parent
     barycentric : (E_new, 3, 3) of each child's corners in its parent
     """
 
     mesh: QuadraticMesh
     nodal: scipy.sparse.csr_matrix
-    corner: scipy.sparse.csr_matrix
     parents: Array
     barycentric: Array
 
@@ -66,14 +64,11 @@ def refined(mesh: QuadraticMesh, marked: Array, shape: Array) -> Refinement:
     mirrored = np.linalg.det(barycentric) < 0
     simplices[mirrored] = simplices[mirrored][:, [0, 2, 1]]
     barycentric[mirrored] = barycentric[mirrored][:, [0, 2, 1]]
-    reference = _corner_transfer(
-        mesh.elements[parents], simplices, barycentric, (fine.nvertices, len(mesh.nodes)), quadratic=True
-    )
+    reference = _transfer(simplices, mesh.elements[parents], _quadratic(barycentric), (fine.nvertices, len(mesh.nodes)))
     straight = quadratic_mesh(reference @ mesh.nodes, simplices, mesh.regions[parents])
     nodes = np.concatenate([barycentric, barycentric[:, _ENDS].mean(axis=2)], axis=1)
     nodal = _transfer(straight.elements, mesh.elements[parents], _quadratic(nodes), (len(straight.nodes), len(mesh.nodes)))
-    corner = _corner_transfer(mesh.elements[parents], simplices, barycentric, (fine.nvertices, corners), quadratic=False)
-    return Refinement(straight.moved(nodal @ mesh.nodes), nodal, corner, parents, barycentric)
+    return Refinement(straight.moved(nodal @ mesh.nodes), nodal, parents, barycentric)
 
 
 def _opposite(elements: Array, facets: Array) -> Array:
@@ -94,13 +89,6 @@ def _quadratic(barycentric: Array) -> Array:
     """P2 shape functions (..., 6) at barycentric coordinates (..., 3)."""
     ends = barycentric[..., _ENDS]
     return np.concatenate([barycentric * (2 * barycentric - 1), 4 * ends[..., 0] * ends[..., 1]], axis=-1)
-
-
-def _corner_transfer(
-    parents: Array, simplices: Array, barycentric: Array, size: tuple[int, int], *, quadratic: bool
-) -> scipy.sparse.csr_matrix:
-    values = _quadratic(barycentric) if quadratic else barycentric
-    return _transfer(simplices, parents[:, : values.shape[-1]], values, size)
 
 
 def _transfer(children: Array, parents: Array, values: Array, size: tuple[int, int]) -> scipy.sparse.csr_matrix:

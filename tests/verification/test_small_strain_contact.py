@@ -58,6 +58,9 @@ SKINS = [
     (5.0, 0.3, 0.45, 1.63923),
     (0.1, 0.4, 0.2, 0.31370),
 ]
+STIFF_SKIN = (100.0, 0.2, 1.5, 0.97572, 5.14876)
+"""G of the skin over that below, thicknesses of the skin and of all over a, d R / a^2, and force over Hertz's with G below, of a
+ball on incompressible layers: dual integral equations of two bonded layers, solved with 60 and 100 points."""
 
 
 @cache
@@ -205,6 +208,27 @@ def test_punch_on_skin(ratio, above, below, factor, verification_record):
     verification_record("punch on a skin, force", normalised(force), factor, tolerance=FORCE_TOLERANCE, **known)
     without, _ = press(Punch(radius=RADIUS), 4 * RADIUS, poisson_ratio=below)
     assert_kills(check_force, without_skin=(without, factor))
+
+
+def test_ball_on_a_stiff_skin(verification_record):
+    """The mean stress jumps where the skin ends: one that is continuous there takes 1 % of the force on this mesh, and half as
+    much on cells of half the size. Mutants: such a force, and the layer without its skin."""
+    contrast, skin, all_layers, depth, factor = STIFF_SKIN
+    radius = 1e3 * RADIUS
+    displacement = depth * RADIUS**2 / radius
+    layers = (Layer(thickness=skin * RADIUS, material=elastic(contrast * SHEAR_MODULUS, 0.5)),)
+    asked = {"displacement": displacement, "finest": RADIUS / 25, "across": 10}
+    hertz = 16 / 3 * SHEAR_MODULUS * radius**0.5 * displacement**1.5
+    force, _ = press(Sphere(radius=radius), all_layers * RADIUS, layers=layers, **asked)
+    bare, _ = press(Sphere(radius=radius), all_layers * RADIUS, **asked)
+
+    def check(expected, force=force):
+        assert force / hertz == pytest.approx(expected, rel=FORCE_TOLERANCE)
+
+    check(factor)
+    known = {"reference": "dual integral equations of two bonded layers", "kind": "exact", "mesh": "axisymmetric, 25 elements"}
+    verification_record("ball on a stiff skin, force", force / hertz, factor, tolerance=FORCE_TOLERANCE, **known)
+    assert_kills(check, continuous_mean_stress=(factor, 0.99 * factor * hertz), without_skin=(factor, bare))
 
 
 def test_punch_on_half_space(verification_record):

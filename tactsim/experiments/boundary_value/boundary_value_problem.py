@@ -1,4 +1,4 @@
-"""A boundary value problem of a body of one material."""
+"""A boundary value problem of a body of one or several materials."""
 
 from __future__ import annotations
 
@@ -8,7 +8,6 @@ from tactsim.experiments.boundary_value.asked import AskedForce, AskedStress
 from tactsim.experiments.boundary_value.conditions import ClampCondition, DisplacementCondition
 from tactsim.experiments.boundary_value.geometry import BlockGeometry, Span
 from tactsim.experiments.boundary_value.motions import motions_of
-from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.experiments.boundary_value.setup import RECORDED, BoundaryValueSetup
 from tactsim.interfaces import Experiment
@@ -78,13 +77,13 @@ class BoundaryValueProblem(BoundaryValueSetup, Experiment):
         """A material without compiled form, and whether nothing but rigid bodies holds the body against some motion."""
         from tactsim.fem.assembly.material_forms import interpreted_warnings
 
-        return [*interpreted_warnings({"material": self.material}), *self._arbitrary_motions()]
+        return [*interpreted_warnings(self.materials), *self._arbitrary_motions()]
 
     def _arbitrary_motions(self) -> list[str]:
         """Motions that nothing but rigid bodies holds."""
         if not self.contacts:
             return []  # a body that is free then is refused
-        parts = Parts.of(self.geometry, self.dimension)
+        parts = self.parts
         if not (free := free_motions(parts, motions_of(parts, self.conditions))):
             return []
         return [

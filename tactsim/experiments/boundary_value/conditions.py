@@ -25,6 +25,10 @@ class Amplitude(Loading):
     """Ramps, jumps, holds, sines or samples of the factor; 1 is the condition as it is written."""
 
 
+Within = dict[str, tuple[Length, Length]]
+"""Two values of some coordinates, by their names."""
+
+
 class Condition(FrozenModel):
     """Something prescribed that follows a course in time."""
 
@@ -37,10 +41,10 @@ class FaceCondition(Condition):
 
     face: str
     """Name of the face, as the geometry has it."""
-    within: dict[str, tuple[Length, Length]] | None = None
+    within: Within | None = None
     """The part of the face between two values of a coordinate, such as ``{r: [0 mm, 1 mm]}``; by default all of it.
 
-    A round body has the distance ``r`` from its axis in 3D, too."""
+    A round body has the distance ``r`` from its axis in 3D and in plane strain, too."""
 
 
 class Components(FrozenModel):
@@ -87,9 +91,32 @@ class Displacement(Components):
 
 
 class DisplacementCondition(FaceCondition, Displacement):
-    """Prescribed components of the displacement of a face."""
+    """Prescribed components of the displacement of a face, the same everywhere or linear in the undeformed coordinates.
+
+    With the same linear displacements on every face but those across it, a block is sheared or stretched evenly.
+    """
 
     kind: Literal["displacement"]
+    slopes: dict[str, dict[str, float]] = {}
+    """By how much a given component grows per length along a coordinate, such as ``x: {y: 0.5}``; the component itself is then
+    that of a point at the origin."""
+
+    def slopes_along(self, axes: tuple[str, ...]) -> dict[int, list[float]]:
+        """Number of the axis -> slopes along all coordinates, of every given component.
+
+        Raises
+        ------
+        ValueError
+            As ``along`` does, or if a slope is that of a component that is not given, or along no coordinate; the message begins
+            with its key.
+        """
+        given = self.along(axes)
+        for name, slopes in self.slopes.items():
+            if name not in axes or axes.index(name) not in given:
+                raise ValueError(f"slopes.{name}: the component {name} is not given; give it, too: that of a point at the origin")
+            if unknown := [along for along in slopes if along not in axes]:
+                raise ValueError(f"slopes.{name}: there is no coordinate {', '.join(unknown)}; allowed: {', '.join(axes)}")
+        return {axis: [self.slopes.get(axes[axis], {}).get(name, 0.0) for name in axes] for axis in given}
 
 
 class ClampCondition(FaceCondition):
@@ -107,18 +134,24 @@ class PointCondition(Condition, Displacement):
 
 
 class RotationCondition(FaceCondition):
-    """A face that turns about an axis along z, its shape in the plane kept; in 3D it is held along z, or free to warp.
+    """A face that turns about an axis along z, its shape in the plane kept or free to change; in 3D it is held along z, or free.
 
-    In plane strain the axis stands on the plane: two faces that turn against each other bend the body between them.
+    In plane strain the axis stands on the plane: two faces that turn against each other bend the body between them. On an
+    axisymmetric body a face of the section turns in the plane of r and z, such as half a turn of both ends of a tube everts it.
     """
 
     kind: Literal["rotation"]
     angle: Angle
-    """Angle, right-handed."""
+    """Angle, right-handed; from r towards z on an axisymmetric body."""
     axial: Literal["held", "free"] = "held"
     """Whether in 3D the points of the face keep their heights, as if glued to a rigid plate, or each moves freely along z."""
     about: tuple[Length, Length] = (0.0, 0.0)
-    """Coordinates x and y of the axis, such as the middle of a block, which has a corner at the origin."""
+    """Coordinates x and y of the axis, such as the middle of a block, which has a corner at the origin; r and z on an
+    axisymmetric body."""
+    sliding: Literal["none", "in_plane", "radial"] = "none"
+    """How the points of the face may move on what turns them: not at all, as if glued to a rigid plate; without friction in the
+    plane of the face, which must be flat, so that the ends of a bent strip may thin; or towards the axis and away from it, each
+    at its angle, so that a tube may widen as it is twisted."""
 
 
 class PressureCondition(FaceCondition):

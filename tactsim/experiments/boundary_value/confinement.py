@@ -8,6 +8,7 @@ import numpy as np
 
 from tactsim.experiments.boundary_value.motions import Held
 from tactsim.experiments.boundary_value.parts import Parts
+from tactsim.mechanics.models.prescribed_motion import Sliding
 
 ROUND_OFF = 1e-9
 """Change of the volume by a free displacement, over the largest, that is none."""
@@ -20,8 +21,11 @@ def is_confined(parts: Parts, held: Sequence[Held]) -> bool:
     points = parts.space.surface_points(facets)
     swept = np.zeros_like(mesh.nodes)
     np.add.at(swept, points.nodes, np.einsum("qa,q,iq->qai", points.values, points.weights, points.normals))
-    change = np.abs(swept).ravel()
-    largest = float(change.max())
+    change = swept.ravel()
+    largest = float(np.abs(change).max())
     for one in held:
         change[one.motion.unknowns] = 0.0
-    return bool(change.max() <= ROUND_OFF * largest)
+        if isinstance(one.motion, Sliding):
+            slides = one.motion.slides(0.0)
+            slides.add(change, -slides.along(change))
+    return bool(np.abs(change).max() <= ROUND_OFF * largest)

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.mesh.affordable import PER_TETRAHEDRON, check_unknowns
-from tactsim.mesh.graded.mapped import Domain, grid_domain, quarter_disc, spaced
+from tactsim.mesh.graded.mapped import Domain, disc, grid_domain, spaced
 from tactsim.mesh.revolved import SweepSymmetry, polar, swept
 from tactsim.model import FrozenModel
 from tactsim.units import Length, NonNegative, Positive, format_quantity
@@ -194,7 +194,7 @@ class PlateGeometry(Geometry):
 
 
 class RoundGeometry(Geometry):
-    """A body with round faces: in 3D swept about z, or the part of it between planes of symmetry."""
+    """A body with round faces: in 3D swept about z, or the part of it between planes of symmetry; a section of a long one."""
 
     radial: Spans
     """Cells along the radius, from the inside out."""
@@ -203,23 +203,27 @@ class RoundGeometry(Geometry):
     around: Annotated[int, Field(ge=2, le=1000)] = 8
     """Cells around a quarter of a circle, of a ring or a sweep; a section without a hole has twice those of its radius."""
     part: Part = "quarter"
-    """What is computed in 3D: planes of symmetry through the axis bound a half (y = 0) or a quarter (x = 0, y = 0)."""
+    """What is computed in 3D and in plane strain: planes of symmetry through the axis bound a half (y = 0) or a quarter (x = 0,
+    y = 0)."""
 
     def _radii(self) -> Array:
         return line_of(self.radial, self.inner_radius)
 
-    def _rounded(self, names: tuple[str, str], mirrors: dict[str, int]) -> Domain:
-        """A quarter of a ring or a disc; ``names`` are the faces on the second and on the first axis of coordinates."""
-        radii = self._radii()
+    def _rounded(self, names: tuple[str, str], mirrors: dict[str, int], part: Part = "quarter") -> Domain:
+        """A part of a ring or a disc; ``names`` are the faces on the second and the first axis, if it ends there."""
+        radii, quarters = self._radii(), SweepSymmetry[part.upper()].quarters
+        mirrors = {name: axis for name, axis in mirrors.items() if axis in SweepSymmetry[part.upper()].value}
         if self.inner_radius > 0:
-            angles = np.linspace(0, np.pi / 2, self.around + 1)
-            ring = grid_domain((radii, angles), (("inner", "outer"), (names[1], names[0])), mirrors)
-            return ring.mapped(polar)
+            angles = np.linspace(0, quarters * np.pi / 2, quarters * self.around + 1)
+            end = {1: names[0], 2: names[1], 4: "end"}[quarters]
+            ring = grid_domain((radii, angles), (("inner", "outer"), (names[1], end)), mirrors).mapped(polar)
+            return ring.closed(names[1], end) if quarters == 4 else ring
         line = radii / radii[-1]
-        disc = grid_domain((line, line), ((names[0], "outer"), (names[1], "outer_2")), mirrors)
-        faces = dict(disc.faces)
-        faces["outer"] = np.concatenate([faces["outer"], faces.pop("outer_2")])
-        return Domain(disc.mesh, faces, disc.mirrors).mapped(lambda nodes: radii[-1] * quarter_disc(nodes))
+        across = np.concatenate([-line[:0:-1], line])
+        first = "outer" if quarters > 1 else names[0], "outer"
+        second = "outer" if quarters == 4 else names[1], "outer"
+        lines = across if quarters > 1 else line, across if quarters == 4 else line
+        return grid_domain(lines, (first, second), mirrors).mapped(lambda nodes: radii[-1] * disc(nodes))
 
     def _revolved(self, section: Domain) -> Domain:
         """The section turned about z."""
@@ -239,8 +243,8 @@ class RoundGeometry(Geometry):
 class CylinderGeometry(RoundGeometry):
     """A cylinder or a tube about z, its bottom at z = 0; faces outer, inner, bottom, top.
 
-    In plane strain it is long along z, and a quarter of its section is computed: its faces x_plane (x = 0) and y_plane (y = 0)
-    are planes of symmetry.
+    In plane strain it is long along z, and a part of its section is computed: the faces x_plane (x = 0) and y_plane (y = 0) where
+    a half or a quarter ends are planes of symmetry.
     """
 
     kind: Literal["cylinder"] = "cylinder"
@@ -260,7 +264,7 @@ class CylinderGeometry(RoundGeometry):
                 "geometry.axial belongs to a cylinder in 3d or axisymmetric, which needs it, and to none in plane_strain"
             )
         if self.axial is None:
-            return self._rounded(("x_plane", "y_plane"), {"x_plane": 0, "y_plane": 1})
+            return self._rounded(("x_plane", "y_plane"), {"x_plane": 0, "y_plane": 1}, self.part)
         inside = "axis" if self.inner_radius == 0 else "inner"
         section = grid_domain((self._radii(), line_of(self.axial)), ((inside, "outer"), ("bottom", "top")))
         return section if dimension == "axisymmetric" else self._revolved(section)

@@ -25,7 +25,7 @@ class LimitLoad:
         before, self._before = self._before, state
         conditions = self._model.conditions
         now, then = conditions.split(state.loads), conditions.split(before.loads)
-        led = not np.array_equal(conditions.motions.values(now[0]), conditions.motions.values(then[0]))
+        led = conditions.motions.at(now[0]).differs(conditions.motions.at(then[0]))
         pushed = not np.array_equal(conditions.places(state.loads), conditions.places(before.loads))
         grown = float(np.abs(np.subtract(now[1], then[1])).max(initial=0.0))
         if grown == 0 or led or pushed:

@@ -18,8 +18,8 @@ from tactsim.experiments.boundary_value.conditions import (
     PointCondition,
     RotationCondition,
 )
-from tactsim.experiments.boundary_value.parts import Parts
-from tactsim.mechanics.models.prescribed_motion import PrescribedMotion, Rotation, Translation
+from tactsim.experiments.boundary_value.parts import AT_NODE, Parts
+from tactsim.mechanics.models.prescribed_motion import PrescribedMotion, Rotation, Sliding, Translation
 
 
 @dataclass(frozen=True)
@@ -66,17 +66,56 @@ def _prescribed(name: str, condition: AnyCondition, parts: Parts) -> list[Prescr
         return [Translation(name, np.array([mesh.dim * node + axis]), value) for axis, value in given.items()]
     facets = parts.facets(condition)
     if isinstance(condition, DisplacementCondition):
-        given = condition.along(parts.axes)
-        return [Translation(name, _unknowns(mesh.dim, facets, axis), value) for axis, value in given.items()]
+        given, slopes, places = condition.along(parts.axes), condition.slopes_along(parts.axes), mesh.nodes[np.unique(facets)]
+        return [
+            Translation(name, _unknowns(mesh.dim, facets, axis), value + places @ slopes[axis]) for axis, value in given.items()
+        ]
     if isinstance(condition, ClampCondition):
         return [Translation(name, _unknowns(mesh.dim, facets, axis), 0.0) for axis in range(mesh.dim)]
     if isinstance(condition, RotationCondition):
-        nodes = np.unique(facets)
-        arms = mesh.nodes[nodes, :2] - condition.about
-        turned: list[PrescribedMotion] = [Rotation(name, mesh.dim * nodes, arms, condition.angle)]
         held = mesh.dim == 3 and condition.axial == "held"
-        return turned + ([Translation(name, _unknowns(mesh.dim, facets, 2), 0.0)] if held else [])
+        return _turned(name, condition, parts) + ([Translation(name, _unknowns(mesh.dim, facets, 2), 0.0)] if held else [])
     return []
+
+
+def _turned(name: str, condition: RotationCondition, parts: Parts) -> list[PrescribedMotion]:
+    """What a rotation prescribes in the plane of the first two axes."""
+    mesh, facets = parts.domain.mesh, parts.facets(condition)
+    nodes = np.unique(facets)
+    arms = mesh.nodes[nodes, :2] - condition.about
+    if condition.sliding == "none":
+        return [Rotation(name, mesh.dim * nodes, arms, condition.angle)]
+    if condition.sliding == "in_plane":
+        normals = np.tile(_normal(condition, parts), (len(nodes), 1))
+        return [Sliding(name, mesh.dim * nodes, arms, normals, condition.angle)]
+    radius = np.hypot(*arms.T)
+    off = radius > AT_NODE * parts.size
+    normals = np.column_stack([-arms[off, 1], arms[off, 0]]) / radius[off, None]
+    return [
+        Rotation(name, mesh.dim * nodes[~off], arms[~off], condition.angle),
+        Sliding(name, mesh.dim * nodes[off], arms[off], normals, condition.angle),
+    ]
+
+
+def _normal(condition: RotationCondition, parts: Parts) -> Array:
+    """The normal (2,) of a flat face along z.
+
+    Raises
+    ------
+    ValueError
+        If it is not flat, or stands across the axis; the message begins with its key.
+    """
+    normals = parts.space.surface_points(parts.facets(condition)).normals
+    if np.ptp(normals, axis=1).max() > AT_NODE:
+        raise ValueError(
+            f"sliding: the face {condition.face} is not flat, so that it has no plane to slide in; allowed: none, radial"
+        )
+    if abs(normals[:2, 0] @ normals[:2, 0] - 1) > AT_NODE:
+        raise ValueError(
+            f"sliding: the plane of {condition.face} stands across the axis, so that nothing would turn what slides in it; "
+            "allowed: none, radial"
+        )
+    return np.asarray(normals[:2, 0])
 
 
 def _unknowns(dim: int, facets: Array, axis: int) -> Array:

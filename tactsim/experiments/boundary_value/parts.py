@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING
 
@@ -11,7 +11,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.experiments.boundary_value.asked import place_in_words
-from tactsim.experiments.boundary_value.conditions import FaceCondition
+from tactsim.experiments.boundary_value.conditions import FaceCondition, Within
 from tactsim.experiments.boundary_value.geometry import AXES, MEASURES, Dimension, Geometry
 from tactsim.mesh.graded.mapped import Domain
 from tactsim.units import format_quantity
@@ -47,6 +47,30 @@ class Parts:
         except ValueError as error:
             raise ValueError(f"geometry: {error}") from None
 
+    def divided(self, regions: Sequence[Within]) -> Parts:
+        """The same with the elements of each region, between two values of coordinates, numbered from one on; zero elsewhere.
+
+        Raises
+        ------
+        ValueError
+            If there is no such coordinate, or a region holds no element or does not end between cells.
+        """
+        mesh, slack = self.domain.mesh, AT_NODE * self.size
+        corners, numbers = mesh.nodes[mesh.elements[:, : mesh.dim + 1]], np.zeros(len(mesh.elements), np.int64)
+        for number, within in enumerate(regions):
+            inside, touched = np.ones(len(numbers), bool), np.ones(len(numbers), bool)
+            for name, (low, high) in within.items():
+                along = self._along(name, corners)
+                inside &= ((along >= low - slack) & (along <= high + slack)).all(axis=1)
+                touched &= (along.max(axis=1) > low + slack) & (along.min(axis=1) < high - slack)
+            if not inside.any() or (touched & ~inside).any():
+                fault = "ends within cells" if inside.any() else "holds no cell"
+                raise ValueError(f"regions.{number}.within: the part of the body within {within} {fault}; let cells end there")
+            numbers[inside] = number + 1
+        if not regions:
+            return self
+        return replace(self, domain=replace(self.domain, mesh=replace(mesh, regions=numbers)))
+
     @property
     def axes(self) -> tuple[str, ...]:
         """Names of the coordinates."""
@@ -57,7 +81,8 @@ class Parts:
         """Displacements and pressures on the mesh."""
         from tactsim.fem.assembly.space import TaylorHood  # not for a wrong word in a case
 
-        return TaylorHood(self.domain.mesh.nodes, self.domain.mesh.elements, MEASURES[self.dimension])
+        mesh = self.domain.mesh
+        return TaylorHood(mesh.nodes, mesh.elements, MEASURES[self.dimension], mesh.regions)
 
     @property
     def size(self) -> float:
@@ -100,7 +125,7 @@ class Parts:
         return facets[inside]
 
     def _along(self, name: str, places: Array) -> Array:
-        """A coordinate in m of places (..., d); in space, a round body has the distance ``r`` from its axis, too.
+        """A coordinate in m of places (..., d); a round body in space or plane strain has the distance ``r`` from its axis, too.
 
         Raises
         ------
@@ -109,7 +134,7 @@ class Parts:
         """
         if name in self.axes:
             return np.asarray(places[..., self.axes.index(name)])
-        turned = self.dimension == "3d" and "outer" in self.domain.faces
+        turned = "outer" in self.domain.faces
         if name == "r" and turned:
             return np.hypot(places[..., 0], places[..., 1])
         allowed = ", ".join((*self.axes, *(("r",) if turned else ())))

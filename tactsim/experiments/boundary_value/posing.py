@@ -69,10 +69,10 @@ class _Posing:
     """Looks up what the conditions of a problem name."""
 
     def __init__(self, problem: BoundaryValueSetup):
-        self._problem, self._parts = problem, Parts.of(problem.geometry, problem.dimension)
+        self._problem, self._parts = problem, problem.parts
         mesh = self._parts.domain.mesh
         self._mesh, self._dim = mesh, mesh.dim
-        self._body = Body(self._parts.space, [problem.material], mesh.regions)
+        self._body = Body(self._parts.space, list(problem.materials.values()), mesh.regions)
         self._size = self._parts.size
 
     def posed(self) -> PosedProblem:
@@ -93,7 +93,7 @@ class _Posing:
         Why: under faces that meet all at once every point chooses between stick and slip in the same step, and Newton cycles with
         a stiff penalty; where a round body rolls on, points close one by one, and multipliers lag behind.
         """
-        tolerance, modulus = self._problem.largest_penetration(self._size), self._problem.material.shear_modulus
+        tolerance, modulus = self._problem.largest_penetration(self._size), self._problem.stiffest
         rubbing = [contact.posed for contact in contacts if contact.posed.pair.has_friction]
         if rubbing and all(self._conforms(contact) for contact in rubbing):
             return Augmentation(tolerance, modulus, SWITCH_SHARE * self._size, softness=SOFTNESS * self._size)

@@ -110,15 +110,19 @@ class Probes:
         return float(contact.surface.total(contact.state.traction)[axis])
 
     def _energy(self, now: Present) -> float:
-        body, state, material = self._model.body, now.timed.contact, self._problem.material
-        isochoric = material.stored_energy(state.kinematics.F)  # type: ignore[attr-defined]
-        volumetric = np.zeros(isochoric.shape)
-        if material.bulk_modulus is not None:
-            # That of the pressure: J at single points misses what the pressure asks for by the error of the mesh.
-            isochoric = isochoric - material.bulk_modulus / 2 * material.volume_change(state.kinematics.F) ** 2
-            volumetric = body.pressure(state.unknowns) ** 2 / (2 * material.bulk_modulus)
-        lasting = 1.0 if material.relaxation is None else material.relaxation.amplitudes[0]
-        return float((body.points.weights * (lasting * isochoric + volumetric)).sum())
+        body, state = self._model.body, now.timed.contact
+        energy, pressure = np.zeros(state.kinematics.J.shape), body.pressure(state.unknowns)
+        for number, material in enumerate(body.materials):
+            own = body.regions == number
+            F = state.kinematics.F[:, :, own]
+            isochoric, volumetric = material.stored_energy(F), 0.0  # type: ignore[attr-defined]
+            if material.bulk_modulus is not None:
+                # That of the pressure: J at single points misses what the pressure asks for by the error of the mesh.
+                isochoric = isochoric - material.bulk_modulus / 2 * material.volume_change(F) ** 2
+                volumetric = pressure[own] ** 2 / (2 * material.bulk_modulus)
+            lasting = 1.0 if material.relaxation is None else material.relaxation.amplitudes[0]
+            energy[own] = lasting * isochoric + volumetric
+        return float((body.points.weights * energy).sum())
 
 
 def isochoric_of(variables: HistoryVariables | None) -> Array | None:

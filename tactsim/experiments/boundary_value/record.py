@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.boundary_value.branching import lowering_motions, unstable_in_words
+from tactsim.experiments.boundary_value.branching import unstable_in_words
 from tactsim.experiments.boundary_value.conditions import SIDES
 from tactsim.experiments.boundary_value.limit_load import LimitLoad
 from tactsim.experiments.boundary_value.posing import PosedProblem, posed
@@ -83,8 +83,7 @@ def _begun(problem: BoundaryValueSetup) -> tuple[TimedPath, BoundaryValueRecord]
     model = posed(problem)
     probes = Probes(problem, model)
     histories = [(problem.amplitude if one is None else one.amplitude or problem.amplitude).history() for one in model.followed]
-    materials = [problem.material]
-    relaxes = problem.material.relaxation is not None
+    materials, relaxes = list(problem.materials.values()), problem.relaxes
     policy = StepPolicy(
         problem.time, shortest_relaxation_time(materials), per_ramp=problem.steps, per_period=problem.steps, sparing=not relaxes
     )
@@ -110,7 +109,7 @@ def _shorter_in_words(record: BoundaryValueRecord) -> str:
     """That more load steps begin with a shorter one, if not even the first was found; empty otherwise."""
     problem, given = record.problem, record.problem.steps
     more = min(SHORTER * given, MOST_STEPS)
-    if record.steps or more == given or problem.material.relaxation is not None or problem.begins_with_jump:
+    if record.steps or more == given or problem.relaxes or problem.begins_with_jump:
         return ""
     shortest = f"{1 / SMALLEST_LOAD_STEP:.0f} times as short"
     return (
@@ -128,12 +127,12 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     """Collects the accepted states of a problem."""
 
     def __init__(self, problem: BoundaryValueSetup, posed: PosedProblem, probes: Probes, path: FollowedPath):
-        material, size = problem.material, posed.parts.size
+        size = posed.parts.size
         super().__init__(
             posed.model,
             path,
             tolerance=problem.largest_penetration(size),
-            stiffest=math.inf if posed.model.conditions.only_contacts_act else 3 * material.shear_modulus / size,
+            stiffest=math.inf if posed.model.conditions.only_contacts_act else 3 * problem.stiffest / size,
             reached=_time_reached,
         )
         self.problem, self._probes, self._mirrors = problem, probes, posed.parts.domain.mirrors
@@ -203,14 +202,14 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
             assumptions.append(f"symmetry about {', '.join(mirrors)}: forces, energy and volume are those of the part computed")
         if self.problem.contacts:
             assumptions.append(penetration_allowed(self.tolerance))
-        if self.problem.material.relaxation is not None:
+        if self.problem.relaxes:
             assumptions.append(ERROR_IN_TIME.format(self.problem.time.tolerance))
         return assumptions
 
     def warnings(self) -> list[str]:
         """Warnings about volumes and ellipticity, about an unstable end, and about rigid bodies that never touched."""
         together = zip(self.problem.contacts, self._touched, strict=True)
-        unstable = unstable_in_words(lowering_motions(*self._kept["last"]))
+        unstable = unstable_in_words(*self._kept["last"])
         return [
             *super().warnings(),
             *([unstable] if unstable else []),

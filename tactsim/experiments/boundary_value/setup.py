@@ -19,12 +19,14 @@ from tactsim.experiments.boundary_value.conditions import (
     Condition,
     ContactCondition,
     RotationCondition,
+    Within,
 )
 from tactsim.experiments.boundary_value.geometry import AXES, AnyGeometry, Dimension
 from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
 from tactsim.experiments.boundary_value.symmetry import check_contact, check_load, check_material
+from tactsim.interfaces import Material
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
 from tactsim.mechanics.paths.step_policy import TimeSettings
@@ -56,6 +58,16 @@ def ramp() -> Amplitude:
     return Amplitude.model_validate({"pieces": [{"kind": "ramp", "to": 1.0, "duration": 1.0}]})
 
 
+class Region(FrozenModel):
+    """A part of the body of another material, bonded to the rest."""
+
+    within: Annotated[Within, Field(min_length=1)]
+    """Where: between two values of some coordinates at which cells end, such as ``{z: [0 mm, 2 mm]}``; ``r`` is the distance from
+    the axis of a round body in 3D and in plane strain, too."""
+    material: AnyMaterial
+    """What it is made of."""
+
+
 class BoundaryValueSetup(FrozenModel):
     """A body of a simple shape under what is prescribed on its faces, and the numbers that are asked of it."""
 
@@ -65,6 +77,8 @@ class BoundaryValueSetup(FrozenModel):
     """Shape and mesh of the body."""
     material: AnyMaterial
     """What it is made of; linear elastic, hyperelastic, compressible or not, relaxing or not."""
+    regions: tuple[Region, ...] = ()
+    """Parts of other materials, such as layers; of those that overlap, the last one counts."""
     conditions: tuple[AnyCondition, ...] = ()
     """What is prescribed on its faces; a face without a condition is free."""
     contacts: tuple[ContactCondition, ...] = ()
@@ -80,6 +94,32 @@ class BoundaryValueSetup(FrozenModel):
     """Steps of time of a material that relaxes."""
     penetration_tolerance: Annotated[Length, Field(ge=1e-12)] | None = None
     """Largest penetration of a rigid body; by default a millionth of the body's size, with friction a hundred-thousandth."""
+
+    @property
+    def materials(self) -> dict[str, Material]:
+        """Every material by its key, that of the body first and then those of the regions."""
+        return {"material": self.material} | {f"regions.{k}.material": one.material for k, one in enumerate(self.regions)}
+
+    @property
+    def relaxes(self) -> bool:
+        """Whether any material relaxes."""
+        return any(material.relaxation is not None for material in self.materials.values())
+
+    @property
+    def stiffest(self) -> float:
+        """Largest shear modulus in Pa."""
+        return max(material.shear_modulus for material in self.materials.values())
+
+    @property
+    def parts(self) -> Parts:
+        """The meshed body, whose regions are those of its materials.
+
+        Raises
+        ------
+        ValueError
+            If it has no mesh in this dimension, or a region does not end between cells; the message begins with the key.
+        """
+        return Parts.of(self.geometry, self.dimension).divided([one.within for one in self.regions])
 
     @property
     def _followed(self) -> list[Condition]:
@@ -122,11 +162,12 @@ class BoundaryValueSetup(FrozenModel):
             component = getattr(one, "component", None)
             if component in ("x", "y", "z", "r") and component not in axes:
                 raise ValueError(f"asked.{name}: there is no component {component}; allowed: {', '.join(axes)}")
-            if one.kind == "energy" and not hasattr(self.material, "stored_energy"):
-                raise ValueError(
-                    f"asked.{name}: the material {self.material.kind} gives no energy; write its method stored_energy(F) in "
-                    "J/m^3, or ask for the force and the displacement of what does the work"
-                )
+            for material in self.materials.values():
+                if one.kind == "energy" and not hasattr(material, "stored_energy"):
+                    raise ValueError(
+                        f"asked.{name}: the material {material.kind} gives no energy; write its method stored_energy(F) in "
+                        "J/m^3, or ask for the force and the displacement of what does the work"
+                    )
             if one.kind == "torque" and self.dimension == "axisymmetric":
                 raise ValueError(f"asked.{name}: a torque about z is asked of a body in 3d or in plane_strain")
             if one.kind == "contact_force" and one.contact > len(self.contacts):
@@ -138,9 +179,10 @@ class BoundaryValueSetup(FrozenModel):
 
     def _check_parts(self) -> None:
         """Check that the body has what the case names, with its mesh."""
-        parts = Parts.of(self.geometry, self.dimension)
+        parts = self.parts
         held = motions_of(parts, self.conditions)
-        check_material(parts, self.material)
+        for key, material in self.materials.items():
+            check_material(parts, key, material)
         for number, condition in enumerate(self.conditions):
             _blaming(f"conditions.{number}.", check_load, parts, condition)
         for number, contact in enumerate(self.contacts):
@@ -164,7 +206,8 @@ class BoundaryValueSetup(FrozenModel):
         """Check that an incompressible body may give way somewhere."""
         from tactsim.experiments.boundary_value.confinement import is_confined
 
-        if self.material.bulk_modulus is None and is_confined(parts, held):
+        incompressible = all(material.bulk_modulus is None for material in self.materials.values())
+        if incompressible and is_confined(parts, held):
             raise ValueError(
                 "conditions: the body is confined on all sides and its material incompressible, so that its volume cannot change "
                 "and its pressure is arbitrary; give the material a bulk_modulus, or a poisson_ratio below 0.5, or leave a face "
@@ -217,10 +260,9 @@ class BoundaryValueSetup(FrozenModel):
 
 def _check_turn(condition: RotationCondition, dimension: str) -> None:
     """Check that a face can turn so."""
-    if dimension == "axisymmetric":
-        raise ValueError(": a face turns about z in 3d and in plane_strain only")
-    if dimension == "plane_strain" and condition.axial == "free":
-        raise ValueError(".axial: no face of a body in plane_strain moves along z")
+    if dimension != "3d" and condition.axial == "free":
+        along = "z" if dimension == "plane_strain" else "the circle that it turns about"
+        raise ValueError(f".axial: no face of a body in {dimension} moves along {along}")
 
 
 def _check_touch(parts: Parts, contact: ContactCondition) -> None:

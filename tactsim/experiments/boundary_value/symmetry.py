@@ -24,11 +24,11 @@ from tactsim.experiments.boundary_value.parts import AT_NODE, Parts
 from tactsim.interfaces import Material
 from tactsim.materials.mirrored import check_in_plane, law_mirrors
 
-ELSEWHERE = "take a geometry without this plane, such as part: whole of a round body in 3d"
+ELSEWHERE = "take a geometry without this plane, such as part: whole of a round body"
 
 
-def check_material(parts: Parts, material: Material) -> None:
-    """Check that the planes of symmetry, and that of a section, mirror the material.
+def check_material(parts: Parts, key: str, material: Material) -> None:
+    """Check that the planes of symmetry, and that of a section, mirror the material that stands at a ``key``.
 
     Raises
     ------
@@ -39,11 +39,11 @@ def check_material(parts: Parts, material: Material) -> None:
         try:
             check_in_plane(material)
         except InputError as error:
-            raise ValueError(f"material: {error}") from None
+            raise ValueError(f"{key}: {error}") from None
     for name, axis in parts.domain.mirrors.items():
         if not law_mirrors(material, axis):
             raise ValueError(
-                f"material: {material.kind} is not its own mirror image across {name}, where the part computed ends; "
+                f"{key}: {material.kind} is not its own mirror image across {name}, where the part computed ends; "
                 "take a geometry without this plane, such as part: whole, or turn the axes of the material"
             )
 

@@ -19,16 +19,18 @@ def section_frame(
 ) -> FieldFrame:
     """Fields of a state; ``time`` stands in the index.
 
-    ``isochoric`` (6, E, Q) is the relaxed isochoric stress in Pa, whose trace in the deformed state counts to the pressure.
+    The pressure is the mean stress, compression positive; where it jumps from layer to layer, the mean of both. ``isochoric``
+    (6, E, Q) is the relaxed isochoric stress in Pa, whose trace in the deformed state counts to the pressure.
     """
     u, p = body.space.split(state.unknowns)
     flat = np.zeros((len(u), 3))
     points, displacement = flat.copy(), flat.copy()
     points[:, :2], displacement[:, :2] = mesh.nodes, u
-    pressure = np.zeros(len(u))
-    pressure[: len(p)] = -p
+    pressure, corners = np.zeros(len(u)), body.space.pressure_corners
+    at_corners = -p
     if isochoric is not None:
-        pressure[: len(p)] -= corner_means(body, mean_stress(body, state.kinematics, isochoric))
+        at_corners = at_corners - corner_means(body, mean_stress(body, state.kinematics, isochoric))
+    pressure[: body.space.corner_count] = np.bincount(corners, at_corners) / np.bincount(corners)
     ends = mesh.elements[:, [[0, 1], [1, 2], [0, 2]]]
     pressure[mesh.elements[:, 3:]] = pressure[ends].mean(axis=2)
     return FieldFrame(

@@ -28,6 +28,12 @@ def volume_error(body: Body, state: ContactEquilibrium) -> Array:
     return change - body.compliance[:, None] * body.pressure(state.unknowns)
 
 
+def poor_share(body: Body, state: ContactEquilibrium) -> float:
+    """Part of the volume with poor ratios."""
+    weights = body.points.weights
+    return float(weights[np.abs(volume_error(body, state)) > POOR_RATIO].sum() / weights.sum())
+
+
 class VolumeRatios:
     """The worst of the accepted states of one run; ``finer`` says what refines the mesh."""
 
@@ -36,11 +42,10 @@ class VolumeRatios:
 
     def poor_share(self, body: Body, state: ContactEquilibrium) -> float:
         """Part of the volume with poor ratios in a state."""
-        error, weights = volume_error(body, state), body.points.weights
-        poor = np.abs(error) > POOR_RATIO
-        share = float(weights[poor].sum() / weights.sum())
+        share = poor_share(body, state)
         if share > self.worst:
-            self.worst, ratios = share, state.kinematics.J[poor]
+            error = volume_error(body, state)
+            self.worst, ratios = share, state.kinematics.J[np.abs(error) > POOR_RATIO]
             self._worst_in_words = f"{ratios.min():.3g} to {ratios.max():.3g}, the worst in {_place(body, error)}"
         return share
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -15,6 +16,7 @@ from tactsim.fem.assembly.body import Body, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.regularising_springs import RegularisingSprings
 from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.solvers.linear import solved
@@ -25,7 +27,7 @@ from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.fields.point_values import cauchy_stress, von_mises
 from tactsim.mechanics.fields.section_fields import section_frame
 from tactsim.mechanics.fields.solid_fields import solid_frame
-from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
+from tactsim.mechanics.models.prescribed_motion import Prescribed, PrescribedMotions
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.fields import VON_MISES
 from tactsim.results.result import FieldFrame
@@ -74,7 +76,7 @@ class Conditions:
     @property
     def only_contacts_act(self) -> bool:
         """Whether all that deforms the body are rigid bodies, each of which moves."""
-        still = not self.loads and not self.motions.values([1.0] * self.motion_count).any()
+        still = not self.loads and not self.motions.move
         return still and bool(self.contacts) and all(contact.displacements.any() for contact in self.contacts)
 
     def split(self, factors: Sequence[float]) -> tuple[Sequence[float], Sequence[float]]:
@@ -137,9 +139,12 @@ class LoadedBody:
         """
         motions, forces = self.conditions.split(loads)
         acting = [*self._springs, *self._forces(forces)]
-        unknowns = self._lifted(now, guess[:-1], self.conditions.motions.values(motions), acting, relaxation)
+        held = self.conditions.motions.at(motions)
+        problem = self._problem(held)
+        stiffness = partial(self._stiffness, self.body.with_relaxation(relaxation), now, acting)
+        unknowns = self._lifted(problem, held, guess[:-1], stiffness)
         if not now.contacts:
-            reached = self.problem.solve(unknowns, loads=acting, relaxation=relaxation)
+            reached = problem.solve(unknowns, loads=acting, relaxation=relaxation)
             return ContactEquilibrium(
                 now.load, reached.unknowns, reached.iterations, reached.history[-1], (), now.regularisation, reached.kinematics
             )
@@ -148,7 +153,7 @@ class LoadedBody:
         distance = max(float(np.linalg.norm(step)) for step in steps)
         directions = [step / distance if distance > 0 else step for step in steps]
         return guaranteed_equilibrium(
-            self.problem, now, now.load + distance, unknowns, Action(directions, relaxation=relaxation, loads=acting)
+            problem, now, now.load + distance, unknowns, Action(directions, relaxation=relaxation, loads=acting)
         )
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
@@ -164,8 +169,9 @@ class LoadedBody:
 
     def tangent(self, state: ContactEquilibrium, factors: Sequence[float]) -> csr_matrix:
         """Tangent of body and loads in N/m, of a body that does not relax; prescribed unknowns have one on the diagonal."""
-        forces = self._forces(self.conditions.split(factors)[1])
-        return self.body.pattern.matrix(self.problem.constraints.apply(self._stiffness(self.body, state, forces)))
+        motions, loads = self.conditions.split(factors)
+        forces, constraints = self._forces(loads), self._problem(self.conditions.motions.at(motions)).constraints
+        return self.body.pattern.matrix(constraints.apply(self._stiffness(self.body, state, forces)))
 
     def load_forces(self, unknowns: Array, factors: Sequence[float]) -> list[Array]:
         """Nodal forces (n, d) in N of each load, of all the factors of the conditions."""
@@ -193,27 +199,22 @@ class LoadedBody:
             load.add_stiffness(data, u)
         return data
 
-    def _lifted(
-        self,
-        now: ContactEquilibrium,
-        guess: Array,
-        prescribed: Array,
-        loads: Sequence[FollowerLoad],
-        relaxation: RelaxationStep | None,
-    ) -> Array:
-        """The guess with the prescribed displacements; what they miss of them goes on linearly into the body."""
-        fixed, unknowns = self.conditions.motions.unknowns, guess.copy()
-        missing = prescribed - unknowns[fixed]
+    def _problem(self, held: Prescribed) -> Problem:
+        """The problem with what is held; where nodes slide, of its own, as their directions turn from step to step."""
+        if held.slides is None:
+            return self.problem
+        problem = Problem(self.body, held.unknowns, solver=self.problem.solver, options=self.problem.options)
+        problem.constraints = Constraints(held.unknowns, self.body.pattern, slides=held.slides)
+        return problem
+
+    def _lifted(self, problem: Problem, held: Prescribed, guess: Array, stiffness: Callable[[], Array]) -> Array:
+        """The guess with the prescribed displacements; what it misses of them goes on linearly into the body."""
+        unknowns, missing = guess.copy(), held.missing(guess)
         if not missing.any():
             return unknowns
-        if np.abs(missing).max() > ACCURACY * np.abs(prescribed).max():
-            body = self.body.with_relaxation(relaxation)
-            data = self._stiffness(body, now, loads)
-            moved = np.zeros(self.space.size)
-            moved[fixed] = missing
-            right = -(body.pattern.matrix(data) @ moved)
-            right[fixed] = missing
-            matrix = body.pattern.matrix(self.problem.constraints.apply(data.copy()))
-            unknowns += solved(self.problem.solver, matrix, right, ACCURACY)
-        unknowns[fixed] = prescribed
-        return unknowns
+        if np.abs(missing).max() > ACCURACY * held.largest:
+            data, matrix = stiffness(), self.body.pattern.matrix
+            right = problem.constraints.free(-(matrix(data) @ missing)) + missing
+            unknowns += solved(problem.solver, matrix(problem.constraints.apply(data)), right, ACCURACY)
+        unknowns[held.unknowns] = held.values
+        return unknowns + held.missing(unknowns)

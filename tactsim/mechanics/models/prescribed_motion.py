@@ -1,4 +1,4 @@
-"""Motions of nodes that are prescribed: straight, or about an axis."""
+"""Motions of nodes that are prescribed: straight, about an axis, or along the normal of a plane that turns about one."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError
+from tactsim.fem.equilibrium.constraints import Slides
 
 SAME = 1e-12
 """Difference of two prescribed displacements, over the size of the body, that is round-off."""
@@ -32,15 +33,15 @@ class PrescribedMotion(Protocol):
 
 @dataclass(frozen=True)
 class Translation:
-    """The ``unknowns`` (k,) all move by ``distance`` in m times the factor."""
+    """The ``unknowns`` (k,) move by ``distance`` in m, of all or (k,) of each, times the factor."""
 
     name: str
     unknowns: Array
-    distance: float
+    distance: float | Array
 
     def values(self, factor: float) -> Array:
         """Displacements (k,) in m."""
-        return np.full(len(self.unknowns), factor * self.distance)
+        return np.broadcast_to(factor * self.distance, len(self.unknowns))
 
 
 @dataclass(frozen=True)
@@ -67,8 +68,67 @@ class Rotation:
         return np.concatenate([(cosine - 1) * x - sine * y, sine * x + (cosine - 1) * y])
 
 
+@dataclass(frozen=True)
+class Sliding:
+    """Nodes at ``arms`` (n, 2) in m from an axis along z stay on planes that turn about it by ``angle`` in rad times the factor.
+
+    ``along_x`` (n,) are the numbers of their unknowns along x, those along y follow each; ``normals`` (n, 2) are the unit
+    normals of the planes before they turn, along which alone the nodes are held.
+    """
+
+    name: str
+    along_x: Array
+    arms: Array
+    normals: Array
+    angle: float
+
+    @property
+    def unknowns(self) -> Array:
+        """None, as the displacement of no unknown follows from the factor alone."""
+        return np.zeros(0, np.int64)
+
+    def values(self, factor: float) -> Array:
+        """Displacements of none."""
+        return np.zeros(0)
+
+    def slides(self, factor: float) -> Slides:
+        """What holds the nodes at a factor: each stays as far from the axis along its normal as it was."""
+        cosine, sine = np.cos(factor * self.angle), np.sin(factor * self.angle)
+        normals = np.array([[cosine, -sine], [sine, cosine]]) @ self.normals.T
+        return Slides(self.along_x, normals, ((self.normals - normals.T) * self.arms).sum(axis=1))
+
+
+@dataclass(frozen=True)
+class Prescribed:
+    """What is prescribed at some factors: displacements ``values`` (m,) in m of the ``unknowns``, and the nodes that slide."""
+
+    unknowns: Array
+    values: Array
+    slides: Slides | None
+
+    def missing(self, unknowns: Array) -> Array:
+        """Displacements (size,) in m that are missing of what is prescribed, zero where nothing is."""
+        missing = np.zeros(len(unknowns))
+        missing[self.unknowns] = self.values - unknowns[self.unknowns]
+        if self.slides is not None:
+            self.slides.add(missing, self.slides.distances - self.slides.along(unknowns))
+        return missing
+
+    def differs(self, other: Prescribed) -> bool:
+        """Whether the same motions prescribe something else at the factors of the ``other``."""
+        both = self.slides, other.slides
+        turned = both[0] is not None and both[1] is not None and not np.array_equal(both[0].normals, both[1].normals)
+        return turned or not np.array_equal(self.values, other.values)
+
+    @property
+    def largest(self) -> float:
+        """Largest prescribed displacement in m."""
+        distances = 0.0 if self.slides is None else np.abs(self.slides.distances).max()
+        return float(max(np.abs(self.values).max(initial=0.0), distances))
+
+
 class PrescribedMotions:
-    """Several motions of one body, each with its factor; ``unknowns`` (m,) are all that they prescribe.
+    """Several motions of one body, each with its factor; ``unknowns`` (m,) are all whose displacements they prescribe.
 
     Parameters
     ----------
@@ -78,7 +138,7 @@ class PrescribedMotions:
     Raises
     ------
     InputError
-        If two motions prescribe different displacements of one unknown.
+        If two motions prescribe different displacements of one unknown, or one slides that another holds.
     """
 
     def __init__(self, motions: Sequence[PrescribedMotion], size: float):
@@ -87,6 +147,29 @@ class PrescribedMotions:
         self.unknowns = np.unique(np.concatenate(every)).astype(np.int64) if every else np.zeros(0, np.int64)
         self._places = [np.searchsorted(self.unknowns, unknowns) for unknowns in every]
         self.values((1.0,) * len(self._motions))
+        self._check_slides()
+
+    @property
+    def move(self) -> bool:
+        """Whether anything moves at the factor one."""
+        turned = any(isinstance(motion, Sliding) and motion.angle != 0 for motion in self._motions)
+        return turned or bool(self.values((1.0,) * len(self._motions)).any())
+
+    def at(self, factors: Sequence[float]) -> Prescribed:
+        """All that is prescribed at these factors.
+
+        Raises
+        ------
+        InputError
+            As `values` does.
+        """
+        together = zip(self._motions, factors, strict=True)
+        every = [motion.slides(factor) for motion, factor in together if isinstance(motion, Sliding)]
+        slides = None
+        if every:
+            first, distances = (np.concatenate([getattr(one, name) for one in every]) for name in ("first", "distances"))
+            slides = Slides(first, np.concatenate([one.normals for one in every], axis=1), distances)
+        return Prescribed(self.unknowns, self.values(factors), slides)
 
     def values(self, factors: Sequence[float]) -> Array:
         """Displacements (m,) in m of the unknowns.
@@ -105,3 +188,14 @@ class PrescribedMotions:
                 raise InputError(f"{motion.name} and {other} prescribe different displacements of one node; free one of them")
             values[places], owner[places] = new, number
         return values
+
+    def _check_slides(self) -> None:
+        """Check that nothing else holds what slides."""
+        held = dict.fromkeys(self.unknowns.tolist(), "another condition, or the symmetry of the body,")
+        for motion in self._motions:
+            if isinstance(motion, Sliding):
+                sliding = np.concatenate([motion.along_x, motion.along_x + 1]).tolist()
+                for unknown in sliding:
+                    if unknown in held:
+                        raise InputError(f"{motion.name} and {held[unknown]} hold one node; let one of them end beside the other")
+                held |= dict.fromkeys(sliding, motion.name)

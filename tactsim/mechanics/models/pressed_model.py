@@ -64,7 +64,7 @@ class PressedModel(ABC):
         for material in materials if mesh.dim == 2 else ():
             check_in_plane(material)
         self.mesh, self.top, self.base = mesh, top, base
-        self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
+        self.space = TaylorHood(mesh.nodes, mesh.elements, measure, mesh.regions)
         self.body = Body(self.space, materials, mesh.regions)
         dim = self.space.dim
         self.points = self.space.surface_points(top)

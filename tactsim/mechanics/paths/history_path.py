@@ -11,15 +11,20 @@ import numpy as np
 
 from tactsim.analytic.histories import History, Segment
 from tactsim.array import Array
+from tactsim.errors import ConvergenceError
 from tactsim.fem.assembly.body import Body, RelaxationStep
 from tactsim.fem.assembly.history_variables import HistoryVariables, elastic_stress, series_of, size_of, step_error
 from tactsim.fem.paths.loading import Event, PathFollower, StepControl
 from tactsim.fem.paths.progress import check_steps
 from tactsim.fem.paths.time_steps import TimeControl, TimeEvent, TimeMarcher
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.fields.volume_ratios import POOR_SHARE, poor_share
 
 JUMP = StepControl(first=1.0, largest=1.0, smallest=1e-5)
 """Steps of a sudden change, as parts of it: at once if Newton can."""
+SURE = 1 / 64
+"""Part of a sudden change so short that elements which lose their volume in it do so because they are too large: a longer one may
+have led to another equilibrium than that on the way, and is halved."""
 SAME = 1e-9
 """Relative difference of two values, and of two times over the whole duration, that is round-off."""
 
@@ -190,7 +195,10 @@ class TimedPath:
 
         def advance(now: _JumpState, share: float, guess: Array) -> _JumpState:
             loads = tuple(a + share * (b - a) for a, b in zip(start.loads, target, strict=True))
-            return _JumpState(share, self._reached(now.state, now.state.time, loads, guess))
+            reached = self._reached(now.state, now.state.time, loads, guess)
+            if share - now.load > SURE and self._lost_volume(now.state, reached):
+                raise ConvergenceError("elements of the equilibrium that Newton found do not keep their volume", [])
+            return _JumpState(share, reached)
 
         within = None if event is None else Event[_JumpState](lambda now: event.value(now.state), event.tolerance)
         follower = PathFollower(advance, JUMP)
@@ -200,6 +208,11 @@ class TimedPath:
             return last.state, True
         # Once more with the contact as stiff as the new pressure asks, so that later steps do not have to.
         return self._reached(last.state, last.state.time, target, last.state.unknowns), False
+
+    def _lost_volume(self, before: TimedState, reached: TimedState) -> bool:
+        """Whether more of the body than before misses the volume that its pressure asks for, and than is warned of."""
+        body = self._problem.body
+        return poor_share(body, reached.contact) > max(POOR_SHARE, poor_share(body, before.contact))
 
     def _march(
         self, start: TimedState, interval: TimeInterval, event: TimeEvent[TimedState] | None

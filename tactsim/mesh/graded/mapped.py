@@ -41,6 +41,18 @@ class Domain:
         """The same grid with its nodes (n, d) at other places; the middles of edges follow, so that curves are true."""
         return replace(self, mesh=self.mesh.moved(place(self.mesh.nodes)))
 
+    def closed(self, first: str, last: str) -> Domain:
+        """The same cells, of a section whose face ``last`` lies on the ``first``, as a ring without ends."""
+        ends = [np.unique(self.faces[name]) for name in (first, last)]
+        kept, gone = (nodes[np.lexsort(self.mesh.nodes[nodes].T)] for nodes in ends)
+        stays = np.ones(len(self.mesh.nodes), bool)
+        stays[gone] = False
+        numbers = np.cumsum(stays) - 1
+        numbers[gone] = numbers[kept]
+        mesh = QuadraticMesh(self.mesh.nodes[stays], numbers[self.mesh.elements], self.mesh.regions)
+        faces = {name: numbers[facets] for name, facets in self.faces.items() if name not in (first, last)}
+        return Domain(mesh, faces, self.mirrors)
+
 
 def spaced(length: float, cells: int, ratio: float = 1.0) -> Array:
     """Coordinates (cells + 1,) from 0 to ``length`` in m; the last cell is ``ratio`` times as long as the first, growing evenly.
@@ -64,7 +76,7 @@ def grid_domain(lines: Sequence[Array], faces: Sequence[tuple[str, str]], mirror
     Parameters
     ----------
     lines : two or three arrays
-    faces : names of the first and the last face along each axis
+    faces : names of the first and the last face along each axis; sides of one name are one face
     mirrors : as in `Domain`
 
     Raises
@@ -77,11 +89,11 @@ def grid_domain(lines: Sequence[Array], faces: Sequence[tuple[str, str]], mirror
     check_unknowns((PER_TRIANGLE if len(lines) == 2 else PER_TETRAHEDRON) * elements, f"cells {counts}")
     mesh = _crossed(lines) if len(lines) == 2 else _twelve_to_a_cell(lines)
     facets, _ = mesh.boundary_facets()
-    named = {}
+    named: dict[str, Array] = {}
     for axis, (line, names) in enumerate(zip(lines, faces, strict=True)):
         for end, name in zip((line[0], line[-1]), names, strict=True):
             on = np.abs(mesh.nodes[facets][..., axis] - end) <= ON_SIDE * (line[-1] - line[0])
-            named[name] = facets[on.all(axis=1)]
+            named[name] = np.concatenate([named.get(name, facets[:0]), facets[on.all(axis=1)]])
     return Domain(mesh, named, dict(mirrors or {}))
 
 
@@ -103,8 +115,8 @@ def _twelve_to_a_cell(lines: Sequence[Array]) -> QuadraticMesh:
     return quadratic_mesh(corners, simplices)
 
 
-def quarter_disc(nodes: Array) -> Array:
-    r"""Places (n, 2) in a quarter of the unit disc of nodes (n, 2) in the unit square, whose far sides become the circle.
+def disc(nodes: Array) -> Array:
+    r"""Places (n, 2) in the unit disc of nodes (n, 2) in the square between -1 and 1, whose sides become the circle.
 
     .. math:: x = u \sqrt{1 - v^2 / 2}, \quad y = v \sqrt{1 - u^2 / 2}
     """

@@ -16,6 +16,7 @@ pytestmark = pytest.mark.usefixtures("one_thread")
 BALL = {"kind": "ball", "radial": CELLS}
 PLATE = {"kind": "plate_with_hole", "size": [SIDE, SIDE], "hole": [SIDE / 3, SIDE / 2], "outward": 2, "around": 2}
 HALF = {"x": [0.0, SIDE / 2]}
+TURNED = {"kind": "rotation", "face": "top", "angle": 1.0, "sliding": "in_plane"}
 
 
 @pytest.mark.parametrize(
@@ -144,8 +145,36 @@ def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
         ),
         ({"dimension": "axisymmetric", "asked": asked("torque", face="top")}, "in 3d or in plane_strain"),
         (
-            {"dimension": "axisymmetric", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0}]},
-            "in plane_strain only",
+            {"dimension": "axisymmetric", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0, "axial": "free"}]},
+            "conditions.0.axial: no face of a body in axisymmetric moves along the circle",
+        ),
+        (
+            {"conditions": [{"kind": "displacement", "face": "top", "x": 0.0, "slopes": {"y": {"x": 0.5}}}]},
+            "conditions.0.slopes.y: the component y is not given",
+        ),
+        (
+            {"conditions": [{"kind": "displacement", "face": "top", "x": 0.0, "slopes": {"x": {"r": 0.5}}}]},
+            "conditions.0.slopes.x: there is no coordinate r; allowed: x, y, z",
+        ),
+        (
+            {"regions": [{"within": {"x": [2 * SIDE, 3 * SIDE]}, "material": RUBBER}]},
+            r"regions.0.within: .* holds no cell; let cells end",
+        ),
+        ({"regions": [{"within": {"x": [0.0, 0.7 * SIDE]}, "material": RUBBER}]}, "regions.0.within: .* ends within cells"),
+        ({"regions": [{"within": {"r": [0.0, SIDE]}, "material": RUBBER}]}, "within: there is no coordinate r; allowed: x, y, z"),
+        ({"geometry": ROD, "conditions": [TURNED | {"face": "outer"}]}, "conditions.0.sliding: the face outer is not flat"),
+        ({"geometry": BRICK, "conditions": [TURNED]}, "conditions.0.sliding: the plane of top stands across the axis"),
+        (
+            {"geometry": BRICK, "conditions": [TURNED | {"face": "left"}, {"kind": "displacement", "face": "bottom", "x": 0.0}]},
+            r"condition 1 \(rotation\) and another condition, or the symmetry of the body, hold one node; let one",
+        ),
+        (
+            {
+                "dimension": "plane_strain",
+                "geometry": SQUARE,
+                "conditions": [TURNED | {"face": "left"}, TURNED | {"face": "top"}],
+            },
+            r"condition 2 \(rotation\) and condition 1 \(rotation\) hold one node",
         ),
         (
             {"dimension": "plane_strain", "conditions": [{"kind": "rotation", "face": "top", "angle": 1.0, "axial": "free"}]},

@@ -36,7 +36,11 @@ BODIES = {
     "cylinder, half": (CylinderGeometry(**ROD, axial=spans(2.0, 2), part="half"), "3d", np.pi, 1e-4),
     "cylinder, whole": (CylinderGeometry(**ROD, axial=spans(2.0, 2), part="whole"), "3d", 2 * np.pi, 1e-4),
     "disc": (CylinderGeometry(**ROD), "plane_strain", np.pi / 4, 1e-4),
+    "disc, half": (CylinderGeometry(**ROD, part="half"), "plane_strain", np.pi / 2, 1e-4),
+    "disc, whole": (CylinderGeometry(**ROD, part="whole"), "plane_strain", np.pi, 1e-4),
     "tube": (CylinderGeometry(**ROD, inner_radius=1.0), "plane_strain", 3 * np.pi / 4, 1e-4),
+    "tube, half": (CylinderGeometry(**ROD, inner_radius=1.0, part="half"), "plane_strain", 3 * np.pi / 2, 1e-4),
+    "tube, whole": (CylinderGeometry(**ROD, inner_radius=1.0, part="whole"), "plane_strain", 3 * np.pi, 1e-4),
     "ball, axisymmetric": (BallGeometry(**ROD), "axisymmetric", 2 * np.pi / 3, 1e-4),
     "ball, quarter": (BallGeometry(**ROD), "3d", np.pi / 6, 3e-4),
     "hollow sphere": (BallGeometry(**ROD, inner_radius=1.0), "axisymmetric", 14 * np.pi / 3, 1e-4),
@@ -67,20 +71,28 @@ def test_named_faces_close_the_surface(name):
         assert np.abs(domain.mesh.nodes[np.unique(domain.faces[face]), axis]).max() == 0.0
 
 
-def test_round_faces_lie_on_their_circles():
-    domain = BODIES["tube"][0].domain("plane_strain")
+@pytest.mark.parametrize("name", ["tube", "tube, half", "tube, whole"])
+def test_round_faces_lie_on_their_circles(name):
+    domain = BODIES[name][0].domain("plane_strain")
     for face, radius in (("inner", 1.0), ("outer", 2.0)):
         places = domain.mesh.nodes[np.unique(domain.faces[face])]
         np.testing.assert_allclose(np.hypot(*places.T), radius, rtol=1e-12)
 
 
 def test_no_element_has_all_its_corners_on_the_boundary():
-    for name in ("block", "brick", "tube"):
+    for name in ("block", "brick", "tube", "tube, whole", "disc, whole"):
         geometry, dimension, _, _ = BODIES[name]
         mesh = geometry.domain(dimension).mesh
         outside = np.unique(mesh.boundary_facets()[0])
         corners = mesh.elements[:, : mesh.dim + 1]
         assert not np.isin(corners, outside).all(axis=1).any()
+
+
+def test_a_whole_ring_is_closed_where_it_begins():
+    """Every corner of the mesh is one node, on whichever side of the beginning the elements lie."""
+    mesh = BODIES["tube, whole"][0].domain("plane_strain").mesh
+    assert len(np.unique(mesh.nodes.round(9), axis=0)) == len(mesh.nodes)
+    assert np.array_equal(np.unique(mesh.elements), np.arange(len(mesh.nodes)))
 
 
 def test_cells_grow_evenly_to_the_ratio():
