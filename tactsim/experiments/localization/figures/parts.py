@@ -9,6 +9,7 @@ import numpy as np
 
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, viewed
 from tactsim.experiments.localization.scene import LocalizedGrasp
+from tactsim.plotting.canvas import with_minus
 from tactsim.results import Result
 
 LINE = 70
@@ -33,7 +34,8 @@ def _contrast(result: Result) -> str:
         for name in ("estimated_contrast", "contrast_deviation")
     )
     spread = f" ± {deviation:.2g}" if np.isfinite(deviation) else ""
-    return f"{'Softer' if value < 0 else 'Stiffer'} than the tissue at this closing: contrast {value:+.2g}{spread}, 0 is tissue"
+    words = f"contrast {with_minus(f'{value:+.2g}')}{spread}, 0 is tissue"
+    return f"{'Softer' if value < 0 else 'Stiffer'} than the tissue at this closing: {words}"
 
 
 def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
@@ -52,5 +54,5 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
         lines.append(_contrast(result))
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
-        lines.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
+        lines.append(with_minus(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height"))
     return tuple(lines)
