@@ -43,7 +43,7 @@ class EstimatedInclusion:
     center : (3,) in m in the undeformed block
     radius : in m; None if not estimated
     contrast : of the stiffness at the working strain, as it acts on the taxels: 0 for tissue, negative if softer; None if unknown
-    covariance : (5, 5) of x, y, z, radius and contrast in SI; None if not estimated
+    covariance : (5, 5) of x, y, z, radius and contrast in SI, (4, 4) where there is no contrast; None if not estimated
     region : where its centre lies with a stated probability; None if not estimated
     line : both ends of the centre line of a tube in m; None if it is no tube or they are not estimated
     """
@@ -64,8 +64,11 @@ class EstimatedInclusion:
         if self.covariance is None:
             return
         covariance = np.asarray(self.covariance, dtype=float)
-        if covariance.shape != (len(PARAMETERS),) * 2 or not np.isfinite(covariance).all():
-            raise InvalidQuantity(f"a covariance of shape {covariance.shape}; needed: (5, 5), finite, of {', '.join(PARAMETERS)}")
+        every = len(PARAMETERS)
+        allowed = {(every, every)} | ({(every - 1, every - 1)} if self.contrast is None else set())
+        if covariance.shape not in allowed or not np.isfinite(covariance).all():
+            needed = f"(5, 5), finite, of {', '.join(PARAMETERS)}; (4, 4) without a contrast"
+            raise InvalidQuantity(f"a covariance of shape {covariance.shape}; needed: {needed}")
 
 
 @dataclass(frozen=True, eq=False)

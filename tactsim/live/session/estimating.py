@@ -26,10 +26,10 @@ from tactsim.units import format_quantity
 
 DIGITS = 3
 """Decimals in mm of an outline."""
-
-
 BARE = "From bare forces, in which plain tissue, too, is bright in the middle; a reference removes this effect"
 """Said of an estimate without a reference."""
+NO_ERROR = "No error of this place is stated"
+"""Said of a place whose estimator does not know how far off it may be."""
 
 
 def frame_readings(
@@ -131,7 +131,7 @@ def _in_words(one: EstimatedInclusion) -> str:
 
 def _uncertainty(one: EstimatedInclusion) -> list[str]:
     if one.covariance is None:
-        return []
+        return [NO_ERROR]
     deviations = np.sqrt(np.diag(one.covariance))
     x, y, z, radius = (f"{1e3 * value:.2g}" for value in deviations[:4])
     lines = [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm (one standard deviation)"]

@@ -15,9 +15,9 @@ from made_grasps import response
 
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization.source import readings_of
-from tactsim.live.session.choices import offered_choices, stored_choice
+from tactsim.live.session.choices import StoredEstimate, offered_choices, stored_choice
 from tactsim.live.session.content import opened_content
-from tactsim.live.session.estimating import estimated, frame_readings, shown_signal
+from tactsim.live.session.estimating import NO_ERROR, estimated, frame_readings, shown_signal
 from tactsim.live.session.messages import Scales, frame_message
 from tactsim.live.session.thinking import estimate_message
 from tactsim.live.sources.recorded import result_recordings, source_noise
@@ -112,12 +112,27 @@ def test_the_estimate_of_a_localization_is_offered_first(tmp_path: Path) -> None
         "Sphere at (23.0, 17.0, 12.0) mm, radius 4.0 mm",
         "± (1, 2, 3) mm, radius ± 0.4 mm (one standard deviation)",
         "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm",
+        NO_ERROR,
     ]
     assert found["errors"] == ["Off by 1.0 mm in plan and +0.0 mm in height, radius off by +0.0 mm"]
     assert found["inclusions"][1]["line"] == [[0, 20, 10], [40, 20, 10]]
     change(folder, ("scene", "estimates"), [{"kind": "sphere"}])
     with pytest.raises(StorageError, match="not a complete result of a localization"):
         opened_content(folder)
+
+
+def test_a_stored_estimate_without_a_contrast_keeps_its_error(tmp_path: Path) -> None:
+    """That of the learned estimator: place and radius with their covariance."""
+    folder = localized_folder(tmp_path)
+    stored = json.loads((folder / "result.json").read_text())
+    del stored["quantities"]["contrast_deviation"]
+    change(folder, ("quantities",), stored["quantities"])
+    choice = stored_choice(folder)
+    assert choice is not None
+    assert isinstance(choice.estimator, StoredEstimate)
+    covariance = choice.estimator.stored.inclusions[0].covariance
+    assert covariance is not None
+    np.testing.assert_allclose(np.sqrt(np.diag(covariance)), [1e-3, 2e-3, 3e-3, 4e-4])
 
 
 def change(folder: Path, place: tuple[str | int, ...], value: object) -> Path:

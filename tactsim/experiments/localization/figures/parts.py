@@ -50,6 +50,8 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
     if "center_deviation" in quantities:
         deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
         lines.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
+    else:
+        lines.append("No error of this place is stated" if len(places) == 1 else "No error of these places is stated")
     if "estimated_contrast" in quantities:
         lines.append(_contrast(result))
     if "lateral_error" in quantities:
