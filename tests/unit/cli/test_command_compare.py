@@ -51,6 +51,17 @@ def test_several_cases_become_one_table_and_one_figure(cases: list[str], capsys:
     assert [row["outer_radius [mm]"] for row in rows] == ["3", "4"]
 
 
+def test_a_warning_of_several_cases_is_said_in_the_report_of_its_own_alone(
+    cases: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", *cases]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    warnings = [line.strip() for line in lines if "warning: " in line]
+    assert len(warnings) == len(cases)
+    assert not any(line.startswith("warning: ") for line in lines), "none is repeated below the table"
+    assert any(line.split() == ["warnings", "1", "1"] for line in lines)
+
+
 def test_several_cases_are_run_again_and_again_in_the_default_folder(cases: list[str]) -> None:
     for force in ("0.1 N", "0.2 N", "0.3 N"):
         assert main(["run", *cases, "--quiet", "--set", f"experiment.loading.pieces.0.to={force}"]) == 0

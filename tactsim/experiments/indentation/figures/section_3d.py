@@ -41,7 +41,7 @@ def draw_cut(axis: Axes, result: Result) -> None:
     limits = _window(section, 1e3 * scene.body.contact_shape.reach, height, mirrored=len(sides) > 1)
     limits = limits[0], (limits[1][0], max(limits[1][1], top_of_words(scene, height, limits[0][1])))
     shown = PressedSection(section, scene, height, limits, sides=sides, meshed=sides, turn=scene.body.rotation)
-    shown.draw(axis, "x in mm", f"cut y = 0 {moment_in_words(result, frame.time)}", at_rest=result.at_rest)
+    shown.draw(axis, "x from the axis of the body in mm", f"cut y = 0 {moment_in_words(result, frame.time)}", at_rest=result.at_rest)
 
 
 def _in_plane(points: Array) -> Array:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drawn import text_of
+from drawn import colliding_words, text_of
 from scenes import SOLVER, unmarked_figures
 
 from tactsim.contact.annulus import Annulus
@@ -74,3 +74,14 @@ def test_drawings_are_png_and_none_without_steps():
     assert drawings["indentation_3d.png"]().startswith(b"\x89PNG")
     assert unmarked_figures(made_up()) == []
     assert figures_for(replace(made_up(), steps=(), frames=())) == {}
+
+
+@pytest.mark.parametrize("status", [Status.CONVERGED, Status.FAILED])
+def test_the_pressure_around_begins_and_ends_as_it_is_and_its_mean_is_named(status):
+    """The steps fell to zero at 0 and 360 degrees, as if nothing were pressed there."""
+    figure = Indentation3DFigures().figure(made_up("whole", status))
+    axis = next(a for a in figure.axes if "sectors" in a.get_title(loc="left"))
+    (steps,) = axis.patches
+    assert steps.get_path().vertices[:, 1].min() == 4.0
+    assert "dotted: on all" in axis.get_title(loc="left")
+    assert colliding_words(figure) == []
