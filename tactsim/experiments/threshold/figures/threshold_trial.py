@@ -110,7 +110,7 @@ def _draw_map(axis: Axes, result: Result, noise: int, norm: LogNorm) -> Any:
         for row, column in np.ndindex(*total.shape):
             words = _label(result, (column, noise, row))
             known = np.isfinite(total[row, column])
-            ink = ink_on(drawn.cmap(float(norm(max(total[row, column], norm.vmin or 0.0))))) if known else "k"
+            ink = ink_on(drawn.cmap(norm(max(float(total[row, column]), norm.vmin or 0.0)))) if known else "k"
             axis.text(column + 0.5, row + 0.5, words, ha="center", va="center", fontsize=7, color=ink)
     return drawn
 

@@ -60,6 +60,21 @@ def test_figure_shows_what_is_seen(symmetry):
     assert ("sectors of the annulus" in written) == (symmetry != "quarter")
 
 
+def test_the_cut_goes_the_way_that_the_body_leans():
+    """In the cut y = 0 of a body that leans about x nothing is pressed."""
+    result = made_up("whole")
+    leaning = result.scene.model_copy(update={"body": Tilted(body=Annulus(), tilt_x=0.1)})
+    assert "cut y = 0" in text_of(Indentation3DFigures().figure(result))
+    figure = Indentation3DFigures().figure(replace(result, scene=leaning))
+    assert "cut x = 0" in text_of(figure)
+    beside = leaning.model_copy(update={"offset": 1e-3})
+    assert "cut y = 0" in text_of(Indentation3DFigures().figure(replace(result, scene=beside)))
+    sensor = next(line for line in figure.axes[0].lines if len(line.get_xdata()) == 2)
+    assert np.ptp(sensor.get_ydata()) == pytest.approx(3.0 * np.sin(0.1))
+    along_y = cut(result.frames[-1], 1)
+    assert len(along_y.cells["triangle6"]) == len(cut(result.frames[-1]).cells["triangle6"])
+
+
 def test_failed_run_is_marked_and_fields_may_be_missing():
     failed = made_up(status=Status.FAILED)
     written = text_of(Indentation3DFigures().figure(replace(failed, frames=())))
