@@ -93,7 +93,7 @@ def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
         axis.plot([0, 1], [0, 1], color="0.7", linewidth=0.8, linestyle=":")
         for style, estimator in zip(_styles(estimators), estimators, strict=True):
             present = np.array([_present(row) for row in estimator["samples"]])
-            found = np.array([row["found"] for row in estimator["samples"]])
+            decided = np.array([row["found"] for row in estimator["samples"]])
             stated = np.array([row["probability"] for row in estimator["samples"]], dtype=float)
             label = f"{style.name}: no probability stated"
             if np.isfinite(stated).all():
@@ -101,8 +101,8 @@ def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
                 area = float(np.sum(np.diff(alarms) * (detected[1:] + detected[:-1]) / 2))
                 axis.plot(alarms, detected, color=style.colour)
                 label = f"{style.name}: area {area:.3f}"
-            decided: dict[str, Any] = {"color": style.colour, "marker": style.marker, "markersize": 6, "linestyle": ""}
-            axis.plot(found[~present].mean(), found[present].mean(), label=label, clip_on=False, zorder=3, **decided)
+            mark: dict[str, Any] = {"color": style.colour, "marker": style.marker, "markersize": 6, "linestyle": ""}
+            axis.plot(decided[~present].mean(), decided[present].mean(), label=label, clip_on=False, zorder=3, **mark)
         axis.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="part of false alarms", ylabel="part detected")
         despined(axis)
         figure.legend(loc="outside lower center", fontsize=8)
@@ -110,7 +110,7 @@ def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
 
 
 def roc(probability: Array, present: Array) -> tuple[Array, Array]:
-    """Part of false alarms and part detected, each (n,) from 0 to 1, if all are taken for lumps whose probability (samples,) is at
+    """Part of false alarms and part detected, each (n,) from 0 to 1, if all count as lumps whose probability (samples,) is at
     least each that occurs; equal ones are taken together.
 
     Source: T. Fawcett 2006, doi:10.1016/j.patrec.2005.10.010, algorithm 1.
