@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
@@ -15,6 +16,15 @@ PARAMETERS = ("x", "y", "z", "radius", "contrast")
 """Order of the rows and columns of a covariance."""
 LEVEL = 0.9
 """Probability of a region where none is named."""
+
+
+USUAL_BLOCK = 10e-3
+"""Longest side in m of a block from which on tenths of a millimetre are fine enough for places in it."""
+
+
+def decimals_of_places(block_size: Array) -> int:
+    """Decimals with which places in a block of sides (3,) in m are written in mm."""
+    return max(1, 1 - math.floor(math.log10(float(np.max(block_size)) / USUAL_BLOCK)))
 
 
 class Region(ABC):

@@ -9,6 +9,7 @@ import numpy as np
 
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, viewed
 from tactsim.experiments.localization.scene import LocalizedGrasp
+from tactsim.interfaces.estimate import decimals_of_places
 from tactsim.plotting.canvas import with_minus
 from tactsim.results import Result
 
@@ -43,7 +44,8 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
     quantities = result.quantities
     if not quantities["present"].value:
         return ("Nothing there.",)
-    places = [f"({', '.join(f'{1e3 * value:.1f}' for value in estimate.center)}) mm" for estimate in scene.estimates]
+    digits = decimals_of_places(scene.size)
+    places = [f"({', '.join(f'{1e3 * value:.{digits}f}' for value in estimate.center)}) mm" for estimate in scene.estimates]
     lines = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities or len(places) > 1 else []
     lines = [part for line in lines for part in wrap(line, LINE)]
     lines += [f"Estimated at {place}" for place in places]
@@ -56,5 +58,5 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
         lines.append(_contrast(result))
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
-        lines.append(with_minus(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height"))
+        lines.append(with_minus(f"Off by {lateral:.{digits}f} mm in plan, {round(depth, digits) + 0.0:+.{digits}f} mm in height"))
     return tuple(lines)
