@@ -1,5 +1,5 @@
 // Front, left and top view: the picture in colour, block, jaws with the sums of their taxels, true and estimated inclusions.
-import { evenly, forceUnit, readable } from "./wire.js";
+import { evenly, forceUnit, readable, ticks } from "./wire.js";
 
 const JAW = 1.2, ROOM = 1.0, USUAL = 40;      // thickness of a drawn jaw and room around, in mm for a block whose longest side is USUAL
 const MARGIN = { left: 40, right: 10, top: 4, bottom: 64 };      // in px, for ticks and the colour scale
@@ -8,16 +8,6 @@ const NAMES = ["x", "y", "z"];
 const MOST_OUTLINED = 8;
 const TICK = { across: 42, up: 22 };           // least distance of ticks in px
 const LABEL = 28;                              // half the length of the name of an axis in px
-const STEPS = [1, 2, 5];                       // between ticks, times a power of ten
-
-// The ticks of an axis of a length in mm: where they are and what they read, at least some px apart; both ends of a short one.
-function ticks(length, scale, apart) {
-  const least = apart / scale, power = Math.floor(Math.log10(least)), ten = 10 ** power;
-  const step = ten * (STEPS.find((one) => one * ten >= least * (1 - 1e-9)) ?? 10);
-  if (step > length) return length * scale < apart / 2 ? [[0, "0"]] : [[0, "0"], [length, String(Number(length.toPrecision(3)))]];
-  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
-  return Array.from({ length: Math.floor(length / step + 1e-9) + 1 }, (_, k) => [k * step, (k * step).toFixed(decimals)]);
-}
 
 export class View {
   constructor(section, kind) {
