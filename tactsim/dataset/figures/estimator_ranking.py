@@ -103,7 +103,7 @@ def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
                 label = f"{style.name}: area {area:.3f}"
             mark: dict[str, Any] = {"color": style.colour, "marker": style.marker, "markersize": 6, "linestyle": ""}
             axis.plot(decided[~present].mean(), decided[present].mean(), label=label, clip_on=False, zorder=3, **mark)
-        axis.set(xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="part of false alarms", ylabel="part detected")
+        axis.set(xlim=(-0.03, 1.03), ylim=(-0.03, 1.03), aspect="equal", xlabel="part of false alarms", ylabel="part detected")
         despined(axis)
         figure.legend(loc="outside lower center", fontsize=8)
     return figure

@@ -36,8 +36,8 @@ GRID = 250
 MOST_NAMED = 12
 """Taxels along a cut of which each is named; of more, every so many."""
 INCLUSION_COLOUR = "#000000"
-NAME_LETTER = 0.011
-"""Width of a letter of an inclusion's name, with some room, over that of the picture."""
+NAME_LETTER, NAME_APART = 0.011, 6.0
+"""Width of a letter of an inclusion's name, with some room, over that of the picture, and distance in points of one beside it."""
 
 
 @dataclass(frozen=True)
@@ -134,17 +134,19 @@ def _draw_outlines(axis: Axes, cut: PlaneCut, result: Result) -> None:
     axis.add_collection(LineCollection(list(segments[inner]), colors=INCLUSION_COLOUR, linewidths=1.2, capstyle="round"))
     for number in sorted({int(k) for k in cut.between[inner].max(axis=1)}):
         ends = segments[(cut.between == number).any(axis=1)].reshape(-1, 2)
-        _name_inclusion(axis, result.scene_as(GraspScene).named_inclusion(number), ends, np.ptp(segments[..., 0]))
+        _name_inclusion(axis, result.scene_as(GraspScene).named_inclusion(number), ends, segments[..., 0])
 
 
-def _name_inclusion(axis: Axes, name: str, ends: Array, width: float) -> None:
-    """The name in an outline through points (n, 2) in mm, or to the right of one that it would hide, in a block of that width."""
+def _name_inclusion(axis: Axes, name: str, ends: Array, block: Array) -> None:
+    """The name in an outline through points (n, 2) in mm, or beside one that it would hide in a block that has these x in mm."""
     (left, bottom), (right, top) = ends.min(axis=0), ends.max(axis=0)
-    fits = right - left > NAME_LETTER * len(name) * width
+    width = NAME_LETTER * len(name) * np.ptp(block)
+    place, side, align = (left + right) / 2, 0.0, "center"
+    if right - left < width:
+        place, side, align = (right, 1.0, "left") if right + width < block.max() else (left, -1.0, "right")
     box = {"boxstyle": "round,pad=0.2", "facecolor": "w", "edgecolor": "none", "alpha": 0.8}
-    style: dict[str, Any] = {"ha": "center" if fits else "left", "va": "center", "fontsize": 8, "bbox": box, "zorder": 4}
-    place = ((left + right) / 2 if fits else right, (bottom + top) / 2)
-    axis.annotate(name, place, (0.0 if fits else 6.0, 0.0), textcoords="offset points", **style)
+    style: dict[str, Any] = {"ha": align, "va": "center", "fontsize": 8, "bbox": box, "zorder": 4}
+    axis.annotate(name, (place, (bottom + top) / 2), (NAME_APART * side, 0.0), textcoords="offset points", **style)
 
 
 def _window(cut: PlaneCut, scene: GraspScene) -> tuple[tuple[float, float], tuple[float, float]]:

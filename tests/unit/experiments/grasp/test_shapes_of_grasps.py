@@ -43,6 +43,7 @@ SHAPES = {
     "tall": Shape((20, 20, 60), TaxelLayout(rows=2, columns=2, pitch=9e-3, size=8e-3), (10, 10, 45), 4.0),
     "one row": Shape((60, 15, 15), TaxelLayout(rows=1, columns=6, pitch=9e-3, size=8e-3), (40, 7.5, 9), 3.0),
     "many taxels": Shape((40, 40, 20), TaxelLayout(rows=16, columns=16, pitch=2.4e-3, size=2.1e-3), (15, 25, 12), 5.0),
+    "at the right side": Shape((60, 15, 15), TaxelLayout(rows=1, columns=6, pitch=9e-3, size=8e-3), (57, 7.5, 9), 1.0),
     "one taxel": Shape((20, 20, 10), TaxelLayout(rows=1, columns=1), (12, 8, 6), 1.0),
 }
 
@@ -96,7 +97,7 @@ def test_a_failed_run_and_a_long_title_leave_the_maps_as_large_as_they_are() -> 
 
 def test_wide_maps_stand_below_each_other_and_their_letters_grow_with_them() -> None:
     layouts = {name: MapsLayout.of(grasped(shape).scene_as(SimulatedGrasp)) for name, shape in SHAPES.items()}
-    assert {name for name, layout in layouts.items() if layout.rows == 2} == {"one row"}
+    assert {name for name, layout in layouts.items() if layout.rows == 2} == {"one row", "at the right side"}
     figure = maps_figure(grasped(SHAPES["one row"]))
     sizes = {float(text.get_fontsize()) for axis in figure.axes for text in axis.texts if text.get_text().endswith("kPa")}
     assert min(sizes) > 7.0
@@ -121,5 +122,9 @@ def test_the_name_of_a_small_inclusion_stands_beside_it(monkeypatch: pytest.Monk
     (frame,) = result.frames
     lump = frame.points[frame.cells["tetra10"][frame.cell_data["region [1]"] > 0]]
     assert axis.transData.inverted().transform(name.get_window_extent())[0, 0] > 1e3 * lump[..., 0].max()
+    beside = section_figure(grasped(SHAPES["at the right side"], cells=(60, 8, 4)))
+    beside.draw_without_rendering()
+    (name,) = (text for text in beside.axes[0].texts if text.get_text() == "sphere 1")
+    assert name.get_window_extent().x1 < beside.axes[0].transData.transform((56.0, 0.0))[0]
     view = result.plot(VIEW.removesuffix(".png"))
     assert {text.get_horizontalalignment() for a in view.axes for text in a.texts if text.get_text() == "sphere 1"} == {"left"}
