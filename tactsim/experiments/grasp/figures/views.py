@@ -140,7 +140,7 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     room, beyond = ROOM * unit, (BEYOND if view.away != 2 else ROOM) * unit
     low_x, high_x = min(0.0, extent[0]), max(size[view.horizontal], extent[1])
     axis.set(xlim=(low_x - room, high_x + room), ylim=(-beyond, size[view.vertical] + beyond), aspect="equal")
-    axis.set(xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm", ylabel=f"{'xyz'[view.vertical]} in mm")
+    axis.set(xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm (undeformed)", ylabel=f"{'xyz'[view.vertical]} in mm")
     axis.locator_params(nbins=MOST_INTERVALS)
     axis.set_title(view.what, loc="left")
     despined(axis)
@@ -255,7 +255,7 @@ def _legend(axis: Axes, grasp: ViewedGrasp) -> None:
     """What the lines mean, and the estimates."""
     axis.axis("off")
     handles: list[Any] = [
-        Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block and places; hatched: not read"),
+        Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block; hatched: no taxel reads there"),
         Line2D([], [], color=INK, linewidth=0.6, label="taxels, their sums in colour on the jaws"),
     ]
     if not grasp.valid.all():
