@@ -140,7 +140,8 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     room, beyond = ROOM * unit, (BEYOND if view.away != 2 else ROOM) * unit
     low_x, high_x = min(0.0, extent[0]), max(size[view.horizontal], extent[1])
     axis.set(xlim=(low_x - room, high_x + room), ylim=(-beyond, size[view.vertical] + beyond), aspect="equal")
-    axis.set(xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm (undeformed)", ylabel=f"{'xyz'[view.vertical]} in mm")
+    right, above = (f"{'xyz'[along]} in mm" for along in (view.horizontal, view.vertical))
+    axis.set(xlabel="" if view.away == 2 else f"{right} (undeformed)", ylabel=above)
     axis.locator_params(nbins=MOST_INTERVALS)
     axis.set_title(view.what, loc="left")
     despined(axis)
