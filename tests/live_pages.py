@@ -54,6 +54,17 @@ def taxel_forces(steps: int = 4, count: int = 3, *, lump: float = 0.5, place: tu
     return np.linspace(1 / steps, 1, steps)[:, None, None, None] * last
 
 
+def resized(result: Result, factors: tuple[float, float, float]) -> Result:
+    """The same forces on a block, with its taxels and jaws, that is so much longer along each side."""
+    scene = result.scene_as(SimulatedGrasp)
+    wide, deep, high = factors
+    layout = TaxelLayout(rows=scene.matrix.rows, columns=scene.matrix.columns, pitch=wide * scene.matrix.pitch, size=wide * 9e-3)
+    ball = Sphere(center=(23e-3 * wide, 18e-3 * deep, 12e-3 * high), radius=4e-3 * min(factors))
+    size = [side * factor for side, factor in zip(SIZE, factors, strict=True)]
+    jaws = {"width": 50e-3 * wide, "depth": 50e-3 * deep, "fillet": 1e-3 * min(factors)}
+    return replace(result, scene=grasp_scene(size, layout, [ball], closing=CLOSING * high, **jaws))
+
+
 def made_up_grasp(forces: np.ndarray | None = None, *, lump: bool = True, title: str = TITLE, **jaws: float) -> Result:
     """The result of a grasp with these forces (step, jaw, row, column) in N, closed by 1 mm in 1 s, with fields of ``jaws``."""
     given = taxel_forces() if forces is None else forces

@@ -27,7 +27,7 @@ if not folder.exists():
     localization.run().save(folder)
 result = ts.load_result(folder)
 print(result.reason)
-for name in ("estimated_center", "estimated_center_deviation", "lateral_error", "depth_error"):
+for name in ("estimated_center", "center_deviation", "lateral_error", "depth_error"):
     if name in result:
         print(name, result[name].to("mm").array.round(2).values)
 

@@ -66,13 +66,19 @@ def run(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def report(results: Mapping[str, Result], out: Path | None, *, everything: bool = False, quiet: bool = False) -> None:
-    """Print the table unless it is to be quiet, and write it with its figure if a folder is given."""
+def report(
+    results: Mapping[str, Result], out: Path | None, *, everything: bool = False, warnings: bool = True, quiet: bool = False
+) -> None:
+    """Print the table unless it is to be quiet, with the warnings if they are wanted, and write it with its figure if a folder is
+    given.
+    """
     from tactsim.results.comparison import compared
 
     comparison = compared(results, _unit_of, _name_of)
     if not quiet:
         _print(comparison, everything)
+        if warnings:
+            _print_warnings(comparison)
     if out is not None:
         from tactsim.cli.figures.comparison import comparison_png
         from tactsim.results.writing import write_files
@@ -85,7 +91,7 @@ def report(results: Mapping[str, Result], out: Path | None, *, everything: bool 
 
 
 def _print(comparison: Comparison, everything: bool) -> None:
-    """Print a row for every input that differs, and for every number, or for those that differ; then every warning once."""
+    """Print a row for every input that differs, and for every number, or for those that differ."""
     from tactsim.results.compared_numbers import FROM_FIRST, shown_number
 
     width = max(8, *map(len, comparison.inputs), *(len(column.head) for column in comparison.columns))
@@ -107,6 +113,10 @@ def _print(comparison: Comparison, everything: bool) -> None:
         console.out("  ".join([f"{column.head:<{width}}", *(f"{n:>{cell}}" for n, cell in zip(numbers, cells, strict=True))]))
     if any(column.name.startswith(FROM_FIRST) for column in columns):
         console.out("\n".join(comparison.notes))
+
+
+def _print_warnings(comparison: Comparison) -> None:
+    """Print every warning once, with the results that have it."""
     for text, warned in comparison.warned.items():
         console.out(f"warning: {', '.join(one_line(name, LONGEST_NAME) for name in warned)}: {one_line(text)}")
 

@@ -79,7 +79,7 @@ def _export(arguments: argparse.Namespace) -> int:
 def _rank(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.figures.estimator_ranking import ranking_figures
     from tactsim.dataset.ranking.measures import ranking
-    from tactsim.dataset.ranking.report import as_text, record
+    from tactsim.dataset.ranking.report import as_summary, as_text, record
     from tactsim.experiments.localization.response_store import stored_response
     from tactsim.localization.estimators.any_estimator import offered_estimators
     from tactsim.localization.estimators.learned import LearnedEstimator
@@ -96,7 +96,7 @@ def _rank(arguments: argparse.Namespace) -> int:
     drawn = _drawn(lambda: ranking_figures(content))
     text = as_text(ranked, samples, tuple(drawn))
     _write(folder, content, text, drawn)
-    console.out(text.split("\n## ")[0].rstrip())
+    console.out(as_summary(ranked, samples))
     console.out(f"report in {folder}")
     return 0
 

@@ -120,6 +120,7 @@ def _show_case(path: Path, save: Path | None, named: Path) -> int:
     """What a case would compute, in words and as a picture of its bodies at rest."""
     from tactsim.case.loading import SWEEPS, read_document, validated_case
     from tactsim.cli.figures.result_figures import form_of
+    from tactsim.results import SolverReport
 
     form, read = None if save is None else form_of(save), read_document(path)
     if str(read[0].value.get("schema")).startswith(SWEEPS):
@@ -127,6 +128,8 @@ def _show_case(path: Path, save: Path | None, named: Path) -> int:
     result = validated_case(*read).at_rest()
     console.out(one_line(result.title or path.stem))
     console.out(f"  {result.kind}, {result.reason}")
+    if isinstance(report := getattr(result.scene, "solver", None), SolverReport):
+        console.out(f"  mesh of {report.size_in_words}")
     for line in (*result.assumptions, *(f"warning: {warning}" for warning in result.warnings)):
         console.out(f"  {one_line(line)}")
     if save is None or form is None:

@@ -3,28 +3,67 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from tactsim.outside.text import one_line
-from tactsim.results import Result, Status, StepRecord
+from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.quantity import ROUND_OFF, format_values
 from tactsim.units import format_quantity
 
 
 def result_report(result: Result, title: str = "") -> str:
     """Title, status, quantities with units, each with assumptions that name it, warnings, and the number of assumptions."""
-    width = max((len(one_line(name)) for name in result.quantities), default=0)
+    shown = grouped(result.quantities)
+    width = max((len(one_line(name)) for name in shown), default=0)
     lines = [one_line(title)] if title else []
     lines.append(_ending(result))
-    for name, q in result.quantities.items():
+    for name, q in shown.items():
         lines.append(f"  {one_line(name):<{width}}  {one_line(format_values(q)):<14}  {one_line(q.description)}".rstrip())
         lines += [f"  {'':<{width}}  assumption: {one_line(words)}" for words in assumptions_about(name, result.assumptions)]
     lines += [f"  warning: {one_line(warning)}" for warning in result.warnings]
     counted = [_counted(len(result.steps), "accepted step"), *([_duration(result.timing)] if result.timing else [])]
     lines.append(f"  {', '.join(counted)}; {_counted(len(result.assumptions), 'assumption')} listed in result.json")
     return "\n".join(lines)
+
+
+NUMBERED = re.compile(r"(.+)_(\d+)")
+"""Name of a quantity of one of several specimens, touches or films."""
+MOST_ALONE = 4
+"""Quantities that differ in their number alone and have a line each; more of them share one."""
+
+
+def grouped(quantities: Mapping[str, Quantity]) -> dict[str, Quantity]:
+    """The quantities, those of one name with many numbers as one of all their values, where the first of them stands.
+
+    Its description is what theirs begin with in common, and what the first and the last go on with.
+    """
+    families: dict[str, list[str]] = {}
+    for name in quantities:
+        if numbered := NUMBERED.fullmatch(name):
+            families.setdefault(numbered[1], []).append(name)
+    alike = {family: names for family, names in families.items() if len({quantities[name].unit for name in names}) == 1}
+    large = {family: names for family, names in alike.items() if len(names) > MOST_ALONE}
+    placed = {name: family for family, names in large.items() for name in names}
+    shown: dict[str, Quantity] = {}
+    for name, quantity in quantities.items():
+        if name not in placed:
+            shown[name] = quantity
+        elif name == large[placed[name]][0]:
+            names = large[placed[name]]
+            shown[f"{name} to _{names[-1].rpartition('_')[2]}"] = _together([quantities[one] for one in names])
+    return shown
+
+
+def _together(quantities: Sequence[Quantity]) -> Quantity:
+    """All values of several quantities of one unit."""
+    values = np.concatenate([quantity.numbers.ravel() for quantity in quantities])
+    first, last = (quantity.description.rpartition(", ") for quantity in (quantities[0], quantities[-1]))
+    alike = first[0] and first[0] == last[0]
+    return Quantity(values, quantities[0].unit, f"{first[0]}, {first[2]} to {last[2]}" if alike else quantities[0].description)
 
 
 def assumptions_about(name: str, assumptions: Iterable[str]) -> list[str]:

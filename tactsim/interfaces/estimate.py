@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
@@ -15,6 +16,15 @@ PARAMETERS = ("x", "y", "z", "radius", "contrast")
 """Order of the rows and columns of a covariance."""
 LEVEL = 0.9
 """Probability of a region where none is named."""
+
+
+USUAL_BLOCK = 10e-3
+"""Longest side in m of a block from which on tenths of a millimetre are fine enough for places in it."""
+
+
+def decimals_of_places(block_size: Array) -> int:
+    """Decimals with which places in a block of sides (3,) in m are written in mm."""
+    return max(1, 1 - math.floor(math.log10(float(np.max(block_size)) / USUAL_BLOCK)))
 
 
 class Region(ABC):
@@ -43,7 +53,7 @@ class EstimatedInclusion:
     center : (3,) in m in the undeformed block
     radius : in m; None if not estimated
     contrast : of the stiffness at the working strain, as it acts on the taxels: 0 for tissue, negative if softer; None if unknown
-    covariance : (5, 5) of x, y, z, radius and contrast in SI; None if not estimated
+    covariance : (5, 5) of x, y, z, radius and contrast in SI, (4, 4) where there is no contrast; None if not estimated
     region : where its centre lies with a stated probability; None if not estimated
     line : both ends of the centre line of a tube in m; None if it is no tube or they are not estimated
     """
@@ -64,8 +74,11 @@ class EstimatedInclusion:
         if self.covariance is None:
             return
         covariance = np.asarray(self.covariance, dtype=float)
-        if covariance.shape != (len(PARAMETERS),) * 2 or not np.isfinite(covariance).all():
-            raise InvalidQuantity(f"a covariance of shape {covariance.shape}; needed: (5, 5), finite, of {', '.join(PARAMETERS)}")
+        every = len(PARAMETERS)
+        allowed = {(every, every)} | ({(every - 1, every - 1)} if self.contrast is None else set())
+        if covariance.shape not in allowed or not np.isfinite(covariance).all():
+            needed = f"(5, 5), finite, of {', '.join(PARAMETERS)}; (4, 4) without a contrast"
+            raise InvalidQuantity(f"a covariance of shape {covariance.shape}; needed: {needed}")
 
 
 @dataclass(frozen=True, eq=False)

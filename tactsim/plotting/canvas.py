@@ -54,7 +54,9 @@ STYLE = {
     "lines.linewidth": 1.5,
 }
 FAILED_COLOUR = "#b00020"
-FAILED_SIZE, LETTERS_PER_INCH, LINES_PER_INCH = 9.5, 9, 72 / (1.2 * 9.5)
+LINE_SPACING = 1.2
+"""Height of a line of words over the size of their letters."""
+FAILED_SIZE, LETTERS_PER_INCH, LINES_PER_INCH = 9.5, 9, 72 / (LINE_SPACING * 9.5)
 """Of the words across the foot of a failed run; the size in points."""
 BRIGHT, LUMA = 0.5, (0.299, 0.587, 0.114)
 """Brightness of a colour above which words on it are black, and the weights of red, green and blue in it (ITU-R BT.601)."""
@@ -133,14 +135,16 @@ def styled() -> AbstractContextManager[Any]:
 def entitle(figure: Figure, title: str, below: str = "", *, size: float = 11) -> None:
     """Writes a title above a figure letter by letter, what a user wrote is no TeX, and a second line below it.
 
-    What is wider than the figure goes on in a new line.
+    What is wider than the figure goes on in a new line, by which the figure grows.
     """
     lines = [one_line(line, LONGEST_TITLE) for line in (title, below) if line]
     text = figure.suptitle("\n".join(lines), x=TITLE_MARGIN, ha="left", fontsize=size, fontweight="bold", parse_math=False)
     room = (1 - 2 * TITLE_MARGIN) * figure.bbox.width / max(text.get_window_extent().width, 1.0)
     if room < 1:
         letters = int(room * max(map(len, lines)))
-        text.set_text("\n".join("\n".join(textwrap.wrap(line, letters)) for line in lines))
+        wrapped = [part for line in lines for part in textwrap.wrap(line, letters)]
+        text.set_text("\n".join(wrapped))
+        figure.set_figheight(figure.get_figheight() + (len(wrapped) - len(lines)) * LINE_SPACING * size / 72)
 
 
 @contextmanager
@@ -182,11 +186,12 @@ def result_figure(
 
 
 def _mark_failure(figure: Figure, result: Result, where: str) -> None:
-    """Writes status and reason across the foot, in up to four lines above the figure's legends, and draws a coloured frame."""
+    """Writes status and reason across a foot below the figure, in up to four lines above its legends, and a coloured frame."""
     words = f"{str(result.status).upper()}{where}: {result.reason.removeprefix(f'{result.status}; ')}"
     lines = textwrap.wrap(words, int(LETTERS_PER_INCH * figure.get_figwidth()), max_lines=4, placeholder=" …")
     legends = max((legend.get_window_extent().height / figure.dpi for legend in figure.legends), default=0.0)
     lines += [""] * int(np.ceil(LINES_PER_INCH * legends))
+    figure.set_figheight(figure.get_figheight() + len(lines) / LINES_PER_INCH)
     figure.set_layout_engine("constrained", w_pad=0.12, h_pad=0.1)
     figure.supxlabel("\n".join(lines), color=FAILED_COLOUR, fontsize=FAILED_SIZE, fontweight="bold")
     figure.patch.set(edgecolor=FAILED_COLOUR, linewidth=5)

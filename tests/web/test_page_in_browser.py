@@ -12,6 +12,8 @@ import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from io import BytesIO
+from itertools import combinations, pairwise
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +21,19 @@ import numpy as np
 import pytest
 from aiohttp import web
 from fork_server import forked_command
-from live_pages import TITLE, description, frame_line, grasp_folder, line, localized_folder, made_up_store, taxel_forces
+from live_pages import (
+    TITLE,
+    description,
+    frame_line,
+    grasp_folder,
+    line,
+    localized_folder,
+    made_up_grasp,
+    made_up_store,
+    resized,
+    taxel_forces,
+)
+from matplotlib.image import imread
 from selenium import webdriver
 from selenium.webdriver.common.action_chains import ActionChains
 from selenium.webdriver.common.by import By
@@ -30,6 +44,7 @@ from tactsim.live.server import application
 from tactsim.live.session.content import Content, opened_content
 from tactsim.live.sources import feed as feeds
 from tactsim.live.sources.feed import Feed
+from tactsim.results import write_result
 
 PACKAGES = {"chromium": "chromium", "chromedriver": "chromium-driver"}
 FLAGS = """--headless=new --no-sandbox --disable-gpu --use-angle=swiftshader --enable-unsafe-swiftshader --disable-quic
@@ -52,6 +67,21 @@ let count = 0;
 for (let k = 3; k < data.length; k += 4) count += data[k] === 255;
 return count;"""
 """Pixels of the top view that nothing shows through, as through the hatching."""
+RECORD_WORDS = """
+window.wordsDrawn = null;
+const words = {}, write = CanvasRenderingContext2D.prototype.fillText;
+CanvasRenderingContext2D.prototype.fillText = function (text, x, y, ...rest) {
+  const kind = this.canvas.closest('section')?.id;
+  (words[kind] ??= []).push([text, x, y, this.textAlign]);
+  if (['top', 'front', 'left'].every((name) => words[name]?.length > 8)) window.wordsDrawn = words;
+  return write.call(this, text, x, y, ...rest);
+};"""
+"""Keeps the words that the views draw, with their places and how they are aligned."""
+LABELS = """return [...document.querySelectorAll('#space-labels span')].map((one) => {
+  const box = one.getBoundingClientRect();
+  return [box.left, box.top, box.right, box.bottom];
+});"""
+"""Borders of the labels in space: left, top, right and bottom."""
 SCRIPT = "<script>document.title = 'taken over'</script>"
 
 
@@ -68,6 +98,11 @@ def browser(tmp_path_factory: pytest.TempPathFactory) -> Iterator[webdriver.Chro
     found = webdriver.Chrome(options=options, service=webdriver.ChromeService(shutil.which("chromedriver")))
     yield found
     found.quit()
+
+
+def overlap(one: list[float], other: list[float]) -> bool:
+    """Whether two boxes of left, top, right and bottom have more than a border in common."""
+    return min(one[2], other[2]) - max(one[0], other[0]) > 1 and min(one[3], other[3]) - max(one[1], other[1]) > 1
 
 
 @contextmanager
@@ -214,6 +249,30 @@ def test_a_result_shows_its_numbers_turns_plays_and_changes_estimators(browser: 
         assert drawn(browser) > count + 2, "steps between were drawn, too"
         browser.find_element(By.CSS_SELECTOR, "[name=unit][value=kPa]").click()
         until(lambda: shows(browser, forces / 9e-3**2 / 1e3))
+
+
+@pytest.mark.parametrize("factors", [(0.01, 0.01, 0.01), (3.0, 3.0, 0.3), (0.5, 0.5, 3.0)])
+def test_blocks_of_any_shape_have_ticks_that_are_apart_and_a_view_that_shows_all(
+    factors: tuple[float, float, float], browser: webdriver.Chrome, tmp_path: Path
+) -> None:
+    """Ticks were 5 mm apart at least, none but 0 in a block of 0.4 mm; bars on the jaws of a tall block were cut off."""
+    folder = write_result(resized(made_up_grasp(), factors), tmp_path / "a", case_id="abc", provenance={})
+    with shown(browser, str(folder)):
+        until(lambda: browser.find_element(By.ID, "space-canvas").get_attribute("data-drawn"))
+        browser.execute_script(RECORD_WORDS)
+        browser.find_element(By.CSS_SELECTOR, "[name=unit][value=kPa]").click()
+        drawn_words = until(lambda: browser.execute_script("return window.wordsDrawn"))
+        for name in ("top", "front", "left"):
+            numbers = [one for one in drawn_words[name] if re.fullmatch(r"[\d.]+", one[0])]
+            across = sorted({x: words for words, x, y, align in numbers if align == "center" and y < numbers[-1][2]}.items())
+            assert len({words for _, words in across}) == len(across) >= 2, name
+            assert min(later[0] - one[0] for one, later in pairwise(across)) > 20, name
+        places = browser.execute_script(LABELS)
+        assert [pair for pair in combinations(places, 2) if overlap(*pair)] == []
+        picture = imread(BytesIO(browser.find_element(By.ID, "space-canvas").screenshot_as_png))[..., :3]
+        coloured = np.flatnonzero((np.ptp(picture, axis=2) > 0.3).any(axis=1))
+        assert len(coloured) > 20
+        assert 0 < coloured[0] <= coloured[-1] < len(picture) - 1, "bars reach beyond the picture in space"
 
 
 def test_no_estimate_is_past_and_a_slow_one_is_cancelled(browser: webdriver.Chrome, tmp_path: Path) -> None:

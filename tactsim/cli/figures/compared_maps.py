@@ -14,7 +14,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import FigureBase
 
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, VOLTAGE
+from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, TAXEL_PRESSURE, VOLTAGE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.outside.text import one_line
 from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on, scale_of, with_minus
@@ -23,6 +23,8 @@ from tactsim.results.compared_numbers import difference
 
 MAPPED = {TAXEL_FORCE: "force on the taxel", READ_FORCE: "force read by the taxel", VOLTAGE: "voltage of the taxel"}
 """What is drawn, with its words: the first that every result has."""
+OF_ANY_SIZE = {TAXEL_PRESSURE: "mean pressure on the taxel"}
+"""What is drawn first of taxels that are not alike, whose forces say nothing of each other."""
 DIFFERENCE_COLOURS = "RdBu_r"
 MOST_MAPPED = 5
 """More results than this have no maps beside each other."""
@@ -82,8 +84,12 @@ class Colours:
 
 
 def taxel_maps(results: Mapping[str, Result]) -> TaxelMaps | None:
-    """What the taxels of all results read; None if one has no taxels or there are too many results."""
-    for name, words in MAPPED.items():
+    """What the taxels of all results read, of different ones their pressures; None if one has no taxels or there are too many
+    results.
+    """
+    layouts = [getattr(result.scene, "matrix", None) for result in results.values()]
+    alike = all(layout == layouts[0] for layout in layouts)
+    for name, words in (MAPPED if alike else OF_ANY_SIZE | MAPPED).items():
         held = {side: [r[key] for r in results.values() if (key := f"{name}_{side}") in r] for side in JAWS}
         every = [one for ones in held.values() for one in ones]
         complete = all(len(ones) == len(results) for ones in held.values()) and len({one.unit for one in every}) == 1

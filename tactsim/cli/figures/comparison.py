@@ -62,17 +62,24 @@ def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> 
 
 
 def _bars(comparison: Comparison, above_maps: bool) -> list[Column]:
-    """The numbers that bars show: what people ask for first, then those that differ most; what tells of the solver last."""
+    """The numbers that bars show, of those that two results have: what people ask for first, then those that differ most; what
+    tells of the solver last.
+    """
     arrays = (LARGEST, FROM_FIRST)
-    wanted = [c for c in comparison.columns if c.name in ASKED_FOR and not (above_maps and c.name.startswith(arrays))]
-    others = [c for c in comparison.differing if not c.name.startswith(arrays) and c not in wanted]
+    shared = [c for c in comparison.columns if sum(value is not None for value in c.values) > 1]
+    wanted = [c for c in shared if c.name in ASKED_FOR and not (above_maps and c.name.startswith(arrays))]
+    others = [c for c in comparison.differing if c in shared and not c.name.startswith(arrays) and c not in wanted]
     others.sort(key=lambda column: (column.name in OF_THE_SOLVER, -_spread(column)))
     no_solver = [c for c in others if c.name not in OF_THE_SOLVER]
     return [*wanted, *(no_solver if no_solver or wanted else others)][: BARS_ABOVE_MAPS if above_maps else MOST_BARS]
 
 
 def _draw_bars(figure: FigureBase, comparison: Comparison, columns: Sequence[Column]) -> None:
-    for axis, column in zip(figure.subplots(max(1, len(columns)), squeeze=False)[:, 0], columns, strict=False):
+    axes = figure.subplots(max(1, len(columns)), squeeze=False)[:, 0]
+    if not columns:
+        axes[0].text(0.5, 0.5, "no number that two of the results have", ha="center", va="center")
+        axes[0].set_axis_off()
+    for axis, column in zip(axes, columns, strict=False):
         heights = [np.nan if value is None else value for value in column.values]
         axis.barh(comparison.names, heights, height=0.6)
         axis.invert_yaxis()

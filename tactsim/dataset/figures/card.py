@@ -13,12 +13,14 @@ from tactsim.array import Array
 from tactsim.dataset import load
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import PRESSURE_COLOURS, Plot, despined, new_figure, scale_of, styled
+from tactsim.plotting.canvas import PRESSURE_COLOURS, Plot, despined, scale_of, titled_figure
 
 if TYPE_CHECKING:
     import xarray
 
-MOST_PANELS = 12
+MOST_PANELS, MOST_NUMBERED = 12, 8
+TITLE, TITLE_SIZE = 0.3, 9.0
+"""Height of a title in inches, and of its letters in points."""
 COLUMNS = 4
 SPREAD, TAXELS = "spread.png", "taxels.png"
 FIGURE_FILES = (SPREAD, TAXELS)
@@ -35,19 +37,20 @@ def card_figures(store: str | Path) -> dict[str, Plot]:
     data = load(store)
     if not data.sizes["sample"]:
         return {}
+    count = data.sizes["sample"]
+    title = f"{data.attrs.get('title') or Path(store).name}: {count} sample{'' if count == 1 else 's'}"
     numbers = _numbers(data)
-    drawings: dict[str, Plot] = {SPREAD: Plot(lambda: spread(numbers))} if numbers else {}
+    drawings: dict[str, Plot] = {SPREAD: Plot(lambda: spread(numbers, title))} if numbers else {}
     if TAXEL_FORCE in data:
-        drawings[TAXELS] = Plot(lambda: taxels(data[TAXEL_FORCE].values[:, -1].mean(axis=0)))
+        drawings[TAXELS] = Plot(lambda: taxels(data[TAXEL_FORCE].values[:, -1].mean(axis=0), title))
     return drawings
 
 
-def spread(numbers: dict[str, tuple[Array, str]]) -> Figure:
+def spread(numbers: dict[str, tuple[Array, str]], title: str) -> Figure:
     """Histogram of each of these values, with their units."""
     names = list(numbers)[:MOST_PANELS]
     rows = -(-len(names) // COLUMNS)
-    with styled():
-        figure = new_figure(2.3 * COLUMNS, 1.7 * rows)
+    with titled_figure(2.3 * COLUMNS, 1.7 * rows + TITLE, title, title_size=TITLE_SIZE) as figure:
         for number, name in enumerate(names, 1):
             values, unit = numbers[name]
             axis = figure.add_subplot(rows, COLUMNS, number)
@@ -61,22 +64,25 @@ def spread(numbers: dict[str, tuple[Array, str]]) -> Figure:
             if number % COLUMNS == 1:
                 axis.set_ylabel("values", fontsize=7)
             despined(axis)
-        return figure
+    return figure
 
 
-def taxels(force: Array) -> Figure:
-    """Mean force (jaw, row, column) in N, row 1 at the bottom."""
-    with styled():
-        figure = new_figure(5.2, 2.4)
+def taxels(force: Array, title: str) -> Figure:
+    """Mean force (jaw, row, column) in N, row 1 at the bottom; of many rows or columns the first and the last are numbered."""
+    factor, unit = scale_of(float(force.max(initial=0.0)), "N")
+    with titled_figure(5.2, 2.4 + TITLE, title, title_size=TITLE_SIZE) as figure:
         for number, (side, values) in enumerate(zip(JAWS, force, strict=True), 1):
             axis = figure.add_subplot(1, 2, number)
-            image = axis.imshow(values, origin="lower", vmin=0.0, vmax=float(force.max()), cmap=PRESSURE_COLOURS)
+            image = axis.imshow(
+                factor * values, origin="lower", vmin=0.0, vmax=factor * float(force.max()), cmap=PRESSURE_COLOURS
+            )
             axis.set_title(f"{side} jaw", loc="left")
             axis.set(xlabel="column, along x", ylabel="row, along y")
-            axis.set_xticks(range(values.shape[1]), [str(k + 1) for k in range(values.shape[1])])
-            axis.set_yticks(range(values.shape[0]), [str(k + 1) for k in range(values.shape[0])])
-            figure.colorbar(image, ax=axis, label="mean force in N", shrink=0.8)
-        return figure
+            for along, size in ((axis.yaxis, values.shape[0]), (axis.xaxis, values.shape[1])):
+                numbered = list(range(size)) if size <= MOST_NUMBERED else [0, size - 1]
+                along.set_ticks(numbered, [str(k + 1) for k in numbered])
+            figure.colorbar(image, ax=axis, label=f"mean force in {unit}", shrink=0.8)
+    return figure
 
 
 def _numbers(data: xarray.Dataset) -> dict[str, tuple[Array, str]]:

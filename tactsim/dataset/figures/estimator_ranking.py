@@ -71,11 +71,59 @@ ROWS = (
 def ranking_figures(record: Mapping[str, Any]) -> dict[str, Drawing]:
     """File name -> drawing, of the numbers of a ranking in SI."""
     estimators = record["estimators"]
-    return {
+    drawings: dict[str, Drawing] = {
         "errors.png": Plot(lambda: errors_figure(estimators)),
         "noise.png": Plot(lambda: noise_figure(estimators)),
         "places.png": Plot(lambda: places_figure(estimators, record["block_size"]["value"])),
     }
+    present = {_present(row) for one in estimators for row in one["samples"]}
+    return drawings if len(present) < 2 else drawings | {"roc.png": Plot(lambda: roc_figure(estimators))}
+
+
+def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
+    """Part detected over the part of false alarms, by the threshold on the probability that anything is there.
+
+    A mark is what an estimator decides; one that states no probability has the mark alone.
+    """
+    rows = estimators[0]["samples"]
+    lumps = sum(map(_present, rows))
+    below = f"{lumps} grasps with a lump, {len(rows) - lumps} without; marks: as decided"
+    with titled_figure(5.2, 6.0, "Detection over false alarms", below) as figure:
+        axis = figure.add_subplot()
+        axis.plot([0, 1], [0, 1], color="0.7", linewidth=0.8, linestyle=":")
+        for style, estimator in zip(_styles(estimators), estimators, strict=True):
+            present = np.array([_present(row) for row in estimator["samples"]])
+            decided = np.array([row["found"] for row in estimator["samples"]])
+            stated = np.array([row["probability"] for row in estimator["samples"]], dtype=float)
+            label = f"{style.name}: no probability stated"
+            if np.isfinite(stated).all():
+                alarms, detected = roc(stated, present)
+                area = float(np.sum(np.diff(alarms) * (detected[1:] + detected[:-1]) / 2))
+                axis.plot(alarms, detected, color=style.colour)
+                label = f"{style.name}: area {area:.3f}"
+            mark: dict[str, Any] = {"color": style.colour, "marker": style.marker, "markersize": 6, "linestyle": ""}
+            axis.plot(decided[~present].mean(), decided[present].mean(), label=label, clip_on=False, zorder=3, **mark)
+        axis.set(xlim=(-0.03, 1.03), ylim=(-0.03, 1.03), aspect="equal", xlabel="part of false alarms", ylabel="part detected")
+        despined(axis)
+        figure.legend(loc="outside lower center", fontsize=8)
+    return figure
+
+
+def roc(probability: Array, present: Array) -> tuple[Array, Array]:
+    """Part of false alarms and part detected, each (n,) from 0 to 1, if all count as lumps whose probability (samples,) is at
+    least each that occurs; equal ones are taken together.
+
+    Source: T. Fawcett 2006, doi:10.1016/j.patrec.2005.10.010, algorithm 1.
+    """
+    order = np.argsort(-probability, kind="stable")
+    last = np.append(np.diff(probability[order]) != 0, True)
+    alarms, detected = (np.append(0.0, np.cumsum(chosen[order])[last] / chosen.sum()) for chosen in (~present, present))
+    return alarms, detected
+
+
+def _present(row: Mapping[str, Any]) -> bool:
+    """Whether there is a lump in a sample."""
+    return row["truth"]["center"] is not None
 
 
 def errors_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:

@@ -138,6 +138,6 @@ def as_text(content: Mapping[str, Any], figures: Mapping[str, bytes]) -> str:
         f"{verdict(content)} by `{content['estimator']}`, noise of a reading {noise_in_words(content['noise'])}; "
         f"{content['of_no_class']} samples belong to no class.",
         "",
-        *markdown_table(["true, estimated across", *names, "named right"], rows),
+        *markdown_table(["true / estimated", *names, "right"], rows),
     ]
     return "\n".join([*lines, "", *(f"![{name}]({name})" for name in figures), ""])

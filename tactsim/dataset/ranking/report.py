@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from textwrap import wrap
 from typing import Any
 
 from tactsim.dataset.ranking.measures import DRAWN, INTERVAL, LABELS, Ranked
@@ -30,6 +31,22 @@ COLUMNS: tuple[tuple[str, tuple[str, ...], str], ...] = (
     ("their height, median [mm]", ("region_height",), "m"),
 )
 """Heading, place in the measures, unit; lengths are shown in mm."""
+BRIEF: tuple[tuple[str, tuple[str, ...], str], ...] = (
+    ("score", ("score",), "m"),
+    ("found", ("detection_rate",), "1"),
+    ("alarms", ("false_alarm_rate",), "1"),
+    ("lateral", ("lateral_error", "median"), "m"),
+    ("depth", ("depth_error", "median"), "m"),
+    ("radius", ("radius_error", "median"), "m"),
+    ("coverage", ("coverage",), "1"),
+)
+"""The same of the columns that fit a terminal."""
+BRIEFLY = (
+    "score, and medians of the lateral, depth and radius errors, in mm; alarms: false ones; coverage: of 90 % regions. Their "
+    "intervals and all else stand in report.md."
+)
+SCREEN = 79
+"""Columns of a terminal."""
 BINNED = (COLUMNS[1], COLUMNS[3], COLUMNS[5], COLUMNS[7], COLUMNS[8])
 
 
@@ -86,6 +103,20 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
     for one in ranked:
         lines += [f"## {one.name}", "", *_of_one(one)]
     return "\n".join([*lines, *(f"![{name}]({name})" for name in figures), ""])
+
+
+def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples) -> str:
+    """What a terminal of 80 columns shows of it: counts, the main numbers without their intervals, and the ratios."""
+    lumps = sum(truth.present for truth in samples.truths)
+    counts = f"{len(samples.truths)} grasps, {lumps} with a lump; readings {samples.source}, noise of a reading "
+    rows = [["estimator", *(heading for heading, _, _ in BRIEF)]]
+    for one in ranked:
+        rows.append([one.name, *(_cell(one.measures, place, unit).partition(" ")[0] for _, place, unit in BRIEF)])
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    table = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows]
+    ratios = [f"{name}: median errors over those of {BASELINE}: {_ratios(one)}" for name, one in against_baseline(ranked).items()]
+    words = [line for given in (BRIEFLY, *ratios) for line in wrap(given, SCREEN)]
+    return "\n".join([*wrap(counts + noise_in_words(samples.noise), SCREEN), "", *table, "", *words])
 
 
 def _ratios(ratios: Mapping[str, float]) -> str:

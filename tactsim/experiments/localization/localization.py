@@ -207,7 +207,8 @@ def _estimate_quantities(estimate: Estimate) -> dict[str, Quantity]:
         deviations = np.sqrt(np.diag(first.covariance))
         quantities["center_deviation"] = Quantity(deviations[:3].tolist(), "m", "standard deviations (x, y, z)")
         quantities["radius_deviation"] = Quantity(float(deviations[3]), "m", "standard deviation of the radius")
-        quantities["contrast_deviation"] = Quantity(float(deviations[4]), "1", "standard deviation of the contrast")
+        if first.contrast is not None:
+            quantities["contrast_deviation"] = Quantity(float(deviations[4]), "1", "standard deviation of the contrast")
     return quantities
 
 

@@ -8,6 +8,11 @@ function paragraph(words, kind = "") {
   return made;
 }
 
+const isPlace = (words) => / at \(|^At \(/.test(words);
+
+// The places with what is said of them, then why; where nothing is, the reason alone comes first.
+const placesFirst = ([reason, ...rest]) => (rest.some(isPlace) ? [...rest, reason] : [reason, ...rest]);
+
 export class Answer {
   constructor(send) {
     Object.assign(this, { send, inclusions: [], message: null, since: 0, now: null });
@@ -28,7 +33,7 @@ export class Answer {
       get("busy-words").textContent = `Computing the estimate${of && ` of ${of}`}: ${Math.round(message.seconds)} s so far${done}${stage}`;
     }
     const lines = message.busy ? [] : [
-      ...message.words.map((words) => paragraph(words, / at \(|^At \(/.test(words) ? "place" : "")),
+      ...placesFirst(message.words).map((words) => paragraph(words, isPlace(words) ? "place" : "")),
       ...message.errors.map((words) => paragraph(words)),
       ...(message.noise ? [paragraph(message.noise, "quiet")] : []),
       ...(message.fault ? [paragraph(message.cancelled ? `No estimate: ${message.fault}` : message.fault, "fault")] : []),

@@ -67,14 +67,19 @@ export class Space {
     }));
   }
 
-  // The labels stay whole: on a narrow screen those at the sides, and those below jaws that are narrower than the block.
+  // The labels stay whole: on a narrow screen those at the sides, and those below jaws that are narrower than the block. One that
+  // would stand on an earlier one goes below it.
   #placeLabels() {
     const { clientWidth: wide, clientHeight: high } = this.labels;
-    const within = (at, half, room) => `${Math.max(half, Math.min(room - half, (room / 2) * (at + 1))).toFixed(1)}px`;
+    const within = (at, half, room) => Math.max(half, Math.min(room - half, (room / 2) * (at + 1))), placed = [];
     for (const { at, place } of this.marks) {
-      const seen = at.clone().project(this.camera);
-      place.style.left = within(seen.x, place.offsetWidth / 2, wide);
-      place.style.top = within(-seen.y, place.offsetHeight / 2, high);
+      const seen = at.clone().project(this.camera), [across, tall] = [place.offsetWidth, place.offsetHeight];
+      const x = within(seen.x, across / 2, wide);
+      let y = within(-seen.y, tall / 2, high);
+      for (const one of placed) if (Math.abs(one.x - x) < (one.across + across) / 2 && Math.abs(one.y - y) < tall) y = one.y + tall;
+      placed.push({ x, y, across });
+      place.style.left = `${x.toFixed(1)}px`;
+      place.style.top = `${y.toFixed(1)}px`;
     }
   }
 
@@ -189,10 +194,12 @@ export class Space {
   reset() {
     const [x, y, z] = this.scene.size, middle = new THREE.Vector3(x / 2, y / 2, z / 2);
     const wide = Math.max(...this.scene.jaws.map((jaw) => Math.hypot(jaw.width, jaw.depth)), Math.hypot(x, y));
-    const reach = Math.hypot(wide / 2, z * (0.5 + PLATE + BAR)), width = this.canvas.clientWidth || 4;
+    const bars = z * (0.5 + PLATE + BAR), reach = Math.hypot(wide / 2, bars), width = this.canvas.clientWidth || 4;
     const narrow = Math.min(1, width / Math.max(1, this.canvas.clientHeight));
-    const away = (0.8 * reach) / Math.sin(THREE.MathUtils.degToRad(15)) / narrow;
-    this.camera.position.copy(middle).add(new THREE.Vector3(...FROM).normalize().multiplyScalar(away));
+    const eye = new THREE.Vector3(...FROM).normalize();
+    const high = Math.hypot(eye.x, eye.y) * bars + eye.z * wide / 2;      // half the height of what is seen, larger than its reach if tall
+    const away = Math.max(0.8 * reach, 0.97 * high) / Math.sin(THREE.MathUtils.degToRad(15)) / narrow;
+    this.camera.position.copy(middle).addScaledVector(eye, away);
     this.camera.near = away / 50; this.camera.far = 10 * away;
     this.controls.target.copy(middle);
     this.controls.update();

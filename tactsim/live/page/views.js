@@ -1,11 +1,13 @@
 // Front, left and top view: the picture in colour, block, jaws with the sums of their taxels, true and estimated inclusions.
-import { evenly, forceUnit, readable } from "./wire.js";
+import { evenly, forceUnit, readable, ticks } from "./wire.js";
 
-const JAW = 1.2, ROOM = 1.0;                  // thickness with which a jaw is drawn and room around everything, in mm
+const JAW = 1.2, ROOM = 1.0, USUAL = 40;      // thickness of a drawn jaw and room around, in mm for a block whose longest side is USUAL
 const MARGIN = { left: 40, right: 10, top: 4, bottom: 64 };      // in px, for ticks and the colour scale
 const AXES = { front: [0, 2], left: [1, 2], top: [0, 1] };
 const NAMES = ["x", "y", "z"];
 const MOST_OUTLINED = 8;
+const TICK = { across: 42, up: 22 };           // least distance of ticks in px
+const LABEL = 28;                              // half the length of the name of an axis in px
 
 export class View {
   constructor(section, kind) {
@@ -34,10 +36,12 @@ export class View {
     this.key = "";
     const across = this.#reach(this.across, scene.shape[1]), up = this.#reach(this.up, scene.shape[0]);
     this.extent = [across[0], across[3], up[0], up[3]];
-    const thick = this.up === 2 ? JAW : 0;
-    this.low = [Math.min(0, this.extent[0]) - ROOM, Math.min(0, this.extent[2]) - thick - ROOM];
-    this.high = [Math.max(scene.size[this.across], this.extent[1]) + ROOM,
-      Math.max(scene.size[this.up], this.extent[3]) + thick + ROOM];
+    const unit = Math.max(...scene.size) / USUAL, room = ROOM * unit;
+    this.jaw = JAW * unit;
+    const thick = this.up === 2 ? this.jaw : 0;
+    this.low = [Math.min(0, this.extent[0]) - room, Math.min(0, this.extent[2]) - thick - room];
+    this.high = [Math.max(scene.size[this.across], this.extent[1]) + room,
+      Math.max(scene.size[this.up], this.extent[3]) + thick + room];
   }
 
   #setRamp(colours) {
@@ -91,8 +95,8 @@ export class View {
     const room = [box.width - MARGIN.left - MARGIN.right, box.height - MARGIN.top - MARGIN.bottom];
     const span = [this.high[0] - this.low[0], this.high[1] - this.low[1]];
     this.scale = Math.min(room[0] / span[0], room[1] / span[1]);
-    const beside = (room[0] - this.scale * span[0]) / 2;
-    this.origin = [MARGIN.left + beside, MARGIN.top + this.scale * span[1]];
+    const [beside, above] = [0, 1].map((k) => (room[k] - this.scale * span[k]) / 2);
+    this.origin = [MARGIN.left + beside, MARGIN.top + above + this.scale * span[1]];
     const key = [this.scale, ...this.origin].join(" ");
     this.canvas.dataset.scale = this.scale;
     if (key !== this.key) { this.key = key; this.taxelPath = this.outlinePath = null; }
@@ -181,7 +185,7 @@ export class View {
         sum += frame.forces[taxel] || 0;
         bad ||= invalid.has(taxel);
       }
-      const [b0, b1] = jaw === 0 ? [size[2], size[2] + JAW] : [-JAW, 0];
+      const [b0, b1] = jaw === 0 ? [size[2], size[2] + this.jaw] : [-this.jaw, 0];
       pen.fillStyle = frame.meaning === "force" ? this.colour(sum / end) : "#8b949e";
       this.#rect(pen, a0, a1, b0, b1, "fillRect");
       pen.strokeStyle = this.quiet; pen.lineWidth = 0.7;
@@ -249,16 +253,19 @@ export class View {
 
   #drawTicks(pen, box) {
     pen.fillStyle = this.quiet; pen.font = "11px system-ui, sans-serif"; pen.textBaseline = "top"; pen.textAlign = "center";
-    const step = 42 / this.scale > 10 ? 20 : 42 / this.scale > 5 ? 10 : 5, bottom = this.origin[1];
-    for (let a = 0; a <= this.scene.size[this.across] + 1e-9; a += step) pen.fillText(String(a), this.#at(a, 0)[0], bottom + 2);
+    const bottom = this.origin[1], size = this.scene.size;
+    for (const [a, words] of ticks(size[this.across], this.scale, TICK.across)) pen.fillText(words, this.#at(a, 0)[0], bottom + 2);
     pen.textAlign = "right"; pen.textBaseline = "middle";
     const edge = Math.min(this.#at(this.low[0], 0)[0], this.#at(this.high[0], 0)[0]);
-    const upStep = 22 / this.scale > 10 ? 20 : 22 / this.scale > 5 ? 10 : 5;
-    for (let b = 0; b <= this.scene.size[this.up] + 1e-9; b += upStep) pen.fillText(String(b), edge - 2, this.#at(0, b)[1]);
+    let beside = 0;
+    for (const [b, words] of ticks(size[this.up], this.scale, TICK.up)) {
+      pen.fillText(words, edge - 2, this.#at(0, b)[1]);
+      beside = Math.max(beside, pen.measureText(words).width);
+    }
     pen.textAlign = "center"; pen.textBaseline = "top";
     pen.fillText(`${NAMES[this.across]} in mm`, this.origin[0] + this.scale * (this.high[0] - this.low[0]) / 2, bottom + 15);
     pen.save();
-    pen.translate(edge - 30, this.#at(0, this.scene.size[this.up] / 2)[1]); pen.rotate(-Math.PI / 2);
+    pen.translate(edge - Math.max(30, beside + 13), Math.max(LABEL, this.#at(0, size[this.up] / 2)[1])); pen.rotate(-Math.PI / 2);
     pen.fillText(`${NAMES[this.up]} in mm`, 0, -4);
     pen.restore();
   }

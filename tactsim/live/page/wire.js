@@ -49,3 +49,14 @@ export function drawRamp(pen, colours, { left, top, width, height }, words) {
     pen.fillText(word, left + share * width, top + height + 2);
   });
 }
+
+const STEPS = [1, 2, 5];                       // between ticks, times a power of ten
+
+// The ticks of an axis of a length in mm: where they are and what they read, at least some px apart; both ends of a short one.
+export function ticks(length, scale, apart) {
+  const least = apart / scale, power = Math.floor(Math.log10(least)), ten = 10 ** power;
+  const step = ten * (STEPS.find((one) => one * ten >= least * (1 - 1e-9)) ?? 10);
+  if (step > length) return length * scale < apart / 2 ? [[0, "0"]] : [[0, "0"], [length, String(Number(length.toPrecision(3)))]];
+  const decimals = Math.max(0, -Math.floor(Math.log10(step) + 1e-9));
+  return Array.from({ length: Math.floor(length / step + 1e-9) + 1 }, (_, k) => [k * step, (k * step).toFixed(decimals)]);
+}

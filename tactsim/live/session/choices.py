@@ -115,7 +115,8 @@ def _inclusion(shape: EstimatedShape, quantities: dict[str, Quantity]) -> Estima
     covariance: Array | None = None
     region: Region | None = None
     if "center_deviation" in quantities:
-        others = (quantities[f"{name}_deviation"].value for name in PARAMETERS[3:])
+        names = [f"{name}_deviation" for name in PARAMETERS[3:]]
+        others = (quantities[name].value for name in names if name in quantities)
         covariance = np.diag(np.array([*quantities["center_deviation"].value, *others], dtype=float) ** 2)
         if (np.diag(covariance)[:3] > 0).all():
             region = GaussianRegion(np.array(shape.center), covariance[:3, :3])

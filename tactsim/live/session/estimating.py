@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.deadline import stopped_by
 from tactsim.errors import InputError
 from tactsim.experiments.localization.source import away_from_truth, with_reference
-from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion, decimals_of_places
 from tactsim.interfaces.readings import Readings, shown_change
 from tactsim.live.session.choices import STORED, Choice
 from tactsim.live.sources.noise import given_noise
@@ -26,10 +26,10 @@ from tactsim.units import format_quantity
 
 DIGITS = 3
 """Decimals in mm of an outline."""
-
-
 BARE = "From bare forces, in which plain tissue, too, is bright in the middle; a reference removes this effect"
 """Said of an estimate without a reference."""
+NO_ERROR, NO_ERRORS = "No error of this place is stated", "No error of these places is stated"
+"""Said of a place, or of all of several, whose estimator does not know how far off they may be."""
 
 
 def frame_readings(
@@ -85,7 +85,7 @@ def estimated(
     noise = noise_words(readings) if of_these else ""
     return {
         "present": estimate.present,
-        "words": [*_words(estimate), *bare, *([] if misfit is None else [f"Warning: {misfit}"])],
+        "words": [*_words(scene, estimate), *bare, *([] if misfit is None else [f"Warning: {misfit}"])],
         "errors": _errors(scene, estimate),
         "noise": noise,
         "inclusions": [_drawn(one) for one in estimate.inclusions],
@@ -117,21 +117,25 @@ def _outline(line: Sequence[Sequence[float]]) -> list[float]:
     return flat
 
 
-def _words(estimate: Estimate) -> list[str]:
+def _words(scene: PageScene, estimate: Estimate) -> list[str]:
     reason = estimate.reason[0].upper() + estimate.reason[1:]
-    return [reason, *(line for one in estimate.inclusions for line in (_in_words(one), *_uncertainty(one)))]
+    places = estimate.inclusions
+    if len(places) > 1 and all(one.covariance is None for one in places):
+        return [reason, *(_in_words(scene, one) for one in places), NO_ERRORS]
+    return [reason, *(line for one in places for line in (_in_words(scene, one), *_uncertainty(one)))]
 
 
-def _in_words(one: EstimatedInclusion) -> str:
-    x, y, z = (1e3 * value for value in one.center)
+def _in_words(scene: PageScene, one: EstimatedInclusion) -> str:
+    digits = decimals_of_places(scene.size)
+    place = ", ".join(f"{1e3 * value:.{digits}f}" for value in one.center)
     kind = "" if one.kind == "unknown" else f"{one.kind} "
-    size = "" if one.radius is None else f", radius {1e3 * one.radius:.1f} mm"
-    return f"{kind}at ({x:.1f}, {y:.1f}, {z:.1f}) mm{size}".capitalize()
+    size = "" if one.radius is None else f", radius {1e3 * one.radius:.{digits}f} mm"
+    return f"{kind}at ({place}) mm{size}".capitalize()
 
 
 def _uncertainty(one: EstimatedInclusion) -> list[str]:
     if one.covariance is None:
-        return []
+        return [NO_ERROR]
     deviations = np.sqrt(np.diag(one.covariance))
     x, y, z, radius = (f"{1e3 * value:.2g}" for value in deviations[:4])
     lines = [f"± ({x}, {y}, {z}) mm, radius ± {radius} mm (one standard deviation)"]
@@ -150,11 +154,13 @@ def _errors(scene: PageScene, estimate: Estimate) -> list[str]:
     points = np.concatenate([shape.places(scene.size) for shape in scene.inclusions])
     _, lateral, depth = away_from_truth(np.array(estimate.inclusions[0].center), points)
     size = _radius_error(scene, estimate.inclusions[0])
-    return [f"Off by {1e3 * lateral:.1f} mm in plan and {round(1e3 * depth, 1) + 0.0:+.1f} mm in height{size}"]
+    digits = decimals_of_places(scene.size)
+    along = f"{round(1e3 * depth, digits) + 0.0:+.{digits}f} mm in height"
+    return [f"Off by {1e3 * lateral:.{digits}f} mm in plan and {along}{size}"]
 
 
 def _radius_error(scene: PageScene, one: EstimatedInclusion) -> str:
     true = getattr((scene.inclusions or (None,))[0], "radius", None)
     if one.radius is None or true is None or len(scene.inclusions or ()) != 1:
         return ""
-    return f", radius off by {1e3 * (one.radius - true):+.1f} mm"
+    return f", radius off by {1e3 * (one.radius - true):+.{decimals_of_places(scene.size)}f} mm"

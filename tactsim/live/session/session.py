@@ -166,6 +166,7 @@ class Session:
         reference = self._content.reference
         notes = [*scene.notes, *(() if reference is None else reference.notes)]
         state = self._chosen.state() | {"times": times, "live": self._chosen.live, "notes": notes}
+        self._thinking.drop_shapes()
         await self._send_text(scene_message(scene, **state))
         self._thinking.shape(scene, shapes_message)
 

@@ -95,6 +95,10 @@ class Thinking:
         """Has shapes made and sent."""
         self._shapes.want(lambda watch: make(scene))
 
+    def drop_shapes(self) -> None:
+        """Sends no more of the shapes that are being made: those of another scene would stand in the next one."""
+        self._shapes.drop()
+
     def drop_estimate(self, *, cancelled: bool = False) -> None:
         """Sends no more of the estimate that is being made."""
         self._estimates.drop(cancelled=cancelled)

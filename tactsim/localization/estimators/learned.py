@@ -62,7 +62,7 @@ class LearnedEstimator(Estimator):
         return cls(weights=str(path))
 
     def estimate(self, readings: Readings) -> Estimate:
-        """At most one ball, with the region of its centre; the places of `ThesisEstimator` where it tells several apart.
+        """At most one ball, with the covariance of place and radius; the places of `ThesisEstimator` where these are several.
 
         Raises
         ------
@@ -84,5 +84,5 @@ class LearnedEstimator(Estimator):
         x, y, z = map(float, np.clip(mean[:3], 0.0, learned.block_size))
         radius = max(float(mean[3]), LEAST_RADIUS)
         region = GaussianRegion(np.array([x, y, z]), covariance[:3, :3])
-        ball = EstimatedInclusion("sphere", (x, y, z), radius, region=region)
+        ball = EstimatedInclusion("sphere", (x, y, z), radius, covariance=covariance, region=region)
         return Estimate(True, (ball,), f"a ball with a probability of {probability:.3g}", probability)

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import csv
 import os
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
+from scenes import grasp_scene
 
 from tactsim.cli import main
 from tactsim.cli.command_compare import _name_of, _unit_of, report
 from tactsim.cli.figures.comparison import comparison_figure
 from tactsim.errors import InputError
 from tactsim.experiments.annulus.closed_form import ClosedForm
+from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.materials.library import LIBRARY
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.comparison import compared
@@ -50,6 +54,17 @@ def test_several_cases_become_one_table_and_one_figure(cases: list[str], capsys:
     assert table.startswith("| | small | large |")
     assert "| outer_radius [mm] | 3 | 4 |" in table
     assert [row["outer_radius [mm]"] for row in rows] == ["3", "4"]
+
+
+def test_a_warning_of_several_cases_is_said_in_the_report_of_its_own_alone(
+    cases: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["run", *cases]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    warnings = [line.strip() for line in lines if "warning: " in line]
+    assert len(warnings) == len(cases)
+    assert not any(line.startswith("warning: ") for line in lines), "none is repeated below the table"
+    assert any(line.split() == ["warnings", "1", "1"] for line in lines)
 
 
 def test_several_cases_are_run_again_and_again_in_the_default_folder(cases: list[str]) -> None:
@@ -213,6 +228,29 @@ def test_two_grasps_show_their_forces_and_not_their_solver() -> None:
     assert "second less first" not in heads, "of other matrices no difference is told"
     heads, _ = heads_and_texts({name: grasped(2, [[force]]) for name, force in (("a", 1.0), ("b", 2.0), ("c", 2.5))})
     assert "upper jaw,\nless the first" in heads
+
+
+def test_taxels_of_other_sizes_are_compared_by_their_pressure() -> None:
+    """Forces of 16 x 16 taxels were all dark beside those of 3 x 3."""
+    layouts = {"large": TaxelLayout(), "small": TaxelLayout(rows=6, columns=6, pitch=5e-3, size=4.5e-3)}
+    results = {}
+    for name, layout in layouts.items():
+        one = grasped(2, np.full((layout.rows, layout.columns), 5e3 * layout.area).tolist())
+        pressures = Quantity(np.full((layout.rows, layout.columns), 5e3).tolist(), "Pa", "")
+        quantities = one.quantities | {f"taxel_pressure_{side}": pressures for side in ("upper", "lower")}
+        results[name] = replace(one, quantities=quantities, scene=grasp_scene((40e-3, 40e-3, 20e-3), layout))
+    heads, texts = heads_and_texts(results)
+    assert "mean pressure on the taxel in kPa; row 1 at the front" in heads
+    assert texts.count("5") == 2 * (9 + 36)
+    alike, _ = heads_and_texts({"one": results["large"], "other": results["large"]})
+    assert "force on the taxel in mN; row 1 at the front" in alike
+
+
+def test_bars_show_only_what_two_results_have() -> None:
+    """Six bars of one result were all that a comparison of an indentation with a film showed."""
+    made = {name: replace(grasped(1, [[0.1]]), units={}, quantities={name: Quantity(2.0, "N", "")}) for name in ("one", "two")}
+    heads, texts = heads_and_texts(made)
+    assert (heads, texts) == ([], ["no number that two of the results have"])
 
 
 def test_arrays_are_compared_by_their_largest_and_round_off_is_no_difference() -> None:

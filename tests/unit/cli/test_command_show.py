@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 from pathlib import Path
 
 import pytest
@@ -77,6 +78,15 @@ def test_a_case_is_shown_before_it_is_computed(tmp_path: Path, capsys: pytest.Ca
     assert main(["show", "annulus_icf", "--save", str(tmp_path / "sketch.bmp")]) == 2
     assert main(["show", "film_lingstat"]) == 2
     assert "film_test: nothing to show at rest" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("kind", ["indentation", "indentation_3d", "timed_indentation", "grasp", "boundary_value_problem"])
+def test_every_case_that_is_shown_says_how_large_its_mesh_is(
+    kind: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(["new", kind, str(tmp_path / "case.yaml")]) == 0
+    assert main(["show", str(tmp_path / "case.yaml")]) == 0
+    assert re.search(r"\n  mesh of \d+ elements, \d+ unknowns\n", capsys.readouterr().out)
 
 
 def test_a_sweep_is_shown_before_it_is_computed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

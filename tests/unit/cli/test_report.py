@@ -65,6 +65,19 @@ def test_what_the_threshold_owes_to_an_assumption_stands_below_it() -> None:
     assert lines[-1].endswith("3 assumptions listed in result.json")
 
 
+def test_quantities_of_many_touches_share_a_line() -> None:
+    """A switch probe on three tissues at three rates printed 72 lines."""
+    touches = {f"force_{k}": Quantity([0.1 * k, 0.2 * k], "N", f"read, in N [closing], tissue {k}") for k in range(1, 6)}
+    alone = {f"rate_{k}": Quantity(1e-3, "m/s", "") for k in (1, 2)}
+    mixed = {f"odd_{k}": Quantity(1.0, "m" if k else "s", "") for k in range(5)}
+    result = replace(RESULT, quantities={"first": Quantity(1.0, "N", ""), **touches, **alone, **mixed})
+    names = [line.split("  ")[1] for line in result_report(result).splitlines() if line.startswith("  ")]
+    assert names[:4] == ["first", "force_1 to _5", "rate_1", "rate_2"]
+    assert names[4:9] == list(mixed)
+    assert "10 values, 100 mN to 1 N  read, in N [closing], tissue 1 to tissue 5" in result_report(result)
+    assert list(result.quantities)[1:6] == list(touches), "the names of the result are as they were"
+
+
 def test_an_empty_result_can_be_reported() -> None:
     text = result_report(Result("k", Status.INTERRUPTED, ""))
     assert text == "interrupted\n  0 accepted steps; 0 assumptions listed in result.json"

@@ -7,9 +7,12 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
+import numpy as np
 import pytest
+from drawn import colliding_words, text_of
 from sweeps import TEXT, Inline, sweep_file
 
+from tactsim.dataset.figures.card import spread, taxels
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
@@ -89,3 +92,13 @@ def test_the_code_in_the_card_learns_from_forces_and_not_from_the_mesh() -> None
     for name, overrides in (("read_force", ()), ("taxel_force", alone)):
         use = "\n".join(_use(layout_of(load_sweep(CASES / "sweep_lumps.yaml", overrides))))
         assert f'inputs=["{name}"], targets=["inclusion_center"]' in use
+
+
+def test_the_figures_of_a_card_have_a_title_and_words_that_stand_clear() -> None:
+    """The numbers of 16 rows stood on each other, and forces of some micronewtons had a power of ten beside the colours."""
+    force = 1e-5 * np.random.default_rng(1).random((2, 16, 16))
+    figures = [taxels(force, "Lumps: 3 samples"), spread({"largest_force": (force[0, 0], "N")}, "Lumps: 3 samples")]
+    for figure in figures:
+        assert colliding_words(figure) == []
+        assert figure.get_suptitle() == "Lumps: 3 samples"
+    assert "mean force in µN" in text_of(figures[0])

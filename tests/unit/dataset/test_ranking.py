@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from itertools import pairwise
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
+from drawn import colliding_words
 from made_grasps import SIZE, made_samples, made_store, plain_result, response
 from scipy.stats import norm
 
 from tactsim.cli import main
-from tactsim.dataset.figures.estimator_ranking import AXES, errors_figure
+from tactsim.dataset.figures.estimator_ranking import AXES, errors_figure, ranking_figures, roc, roc_figure
 from tactsim.dataset.ranking.measures import JudgedEstimate, binned, interval, measures, outcome, penalty, ranking, share
 from tactsim.dataset.ranking.report import against_baseline, as_text, record
 from tactsim.dataset.ranking.samples import Truth
@@ -148,7 +151,10 @@ def test_the_command_writes_report_and_figures(
         str(tmp_path / "out"),
     ]
     assert main(order) == 0
-    assert "| model_based |" in capsys.readouterr().out
+    shown = capsys.readouterr().out
+    assert any(line.startswith("model_based ") for line in shown.splitlines())
+    assert max(map(len, shown.split("report in")[0].splitlines())) < 80, "the table was three times as wide as a terminal"
+    assert "| model_based |" in (tmp_path / "out" / "report.md").read_text()
     content = json.loads((tmp_path / "out" / "report.json").read_text())
     assert content["samples"] == 1
     assert content["noise"]["value"] == pytest.approx(0.3e-3)
@@ -176,6 +182,36 @@ def test_labels_of_contrasts_are_not_written_over_each_other(contrasts: tuple[fl
     spans = sorted((text.get_window_extent().x0, text.get_window_extent().x1) for text in shown)
     assert spans
     assert all(right <= left for (_, right), (left, _) in pairwise(spans))
+
+
+def judged(name: str, probabilities: Sequence[float | None], found: Sequence[bool]) -> dict[str, Any]:
+    """An estimator on samples of which the first half hold a lump."""
+    rows = zip(probabilities, found, strict=True)
+    places = [[0.0, 0.0, 0.0]] * (len(found) // 2) + [None] * (len(found) // 2)
+    samples = [{"probability": p, "found": f, "truth": {"center": c}} for (p, f), c in zip(rows, places, strict=True)]
+    return {"name": name, "samples": samples}
+
+
+def test_the_roc_of_known_probabilities() -> None:
+    present = np.array([True, True, True, False, False])
+    alarms, detected = roc(np.array([0.9, 0.6, 0.6, 0.6, 0.1]), present)
+    np.testing.assert_allclose(alarms, [0, 0, 0.5, 1])
+    np.testing.assert_allclose(detected, [0, 1 / 3, 1, 1], err_msg="equal probabilities are taken together")
+
+
+def test_the_roc_is_drawn_where_there_are_grasps_with_and_without_a_lump() -> None:
+    half = judged("model_based", [0.9, 0.2, 0.3, 0.1], [True, False, False, False])
+    silent = judged("thesis", [None] * 4, [True, True, True, False])
+    figure = roc_figure([half, silent])
+    words = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert words == ["model based: area 0.750", "thesis: no probability stated"]
+    assert colliding_words(figure) == []
+    thesis = figure.axes[0].lines[-1]
+    assert (thesis.get_xdata()[0], thesis.get_ydata()[0]) == (0.5, 1.0)
+    record: dict[str, Any] = {"block_size": {"value": [0.04, 0.04, 0.02]}}
+    assert "roc.png" in ranking_figures(record | {"estimators": [half, silent]})
+    one_kind = {"name": "thesis", "samples": half["samples"][:2]}
+    assert "roc.png" not in ranking_figures(record | {"estimators": [one_kind]})
 
 
 def test_the_title_covers_no_estimator_of_the_legend() -> None:

@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
+import threading
 import time
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
-from live_pages import description, frame_line, grasp_folder, line, localized_folder, taxel_forces
+from live_pages import description, frame_line, grasp_folder, line, localized_folder, made_up_store, taxel_forces
 from open_pages import Client, Page, opened_page, with_client
 from slow_estimator import slow_content
 
+from tactsim.live.session import session
 from tactsim.live.session.choices import stored_choice
 from tactsim.live.session.content import opened_content
 from tactsim.live.session.estimating import frame_readings, shown_signal
 from tactsim.live.sources import feed as feeds
 from tactsim.live.sources.feed import Feed
+from tactsim.live.sources.scene import PageScene
 
 Act = Callable[[Client], Awaitable[None]]
 
@@ -152,3 +156,29 @@ def test_a_stored_estimate_has_its_region_and_the_readings_it_was_made_of(tmp_pa
     assert ball.region is not None, "of its standard deviations, if no region was kept"
     # along x, from above: the root of the 90 % quantile of chi-squared with three degrees of freedom, 2.5, times 1 mm
     np.testing.assert_allclose(np.ptp(ball.region.shadow(2)[0][:, 0]), 2 * 2.5e-3, rtol=0.01)
+
+
+def test_true_inclusions_of_a_sample_never_stand_in_the_next_one(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """An artery takes a second or two to draw; chosen away, it stood in the next sample for as long again."""
+    go_on, of_first = threading.Event(), threading.Event()
+
+    def shapes(scene: PageScene) -> str:
+        first = "sample 0" in scene.title
+        if first:
+            of_first.set()
+            go_on.wait(10.0)
+        return json.dumps({"is": "shapes", "of": scene.title, "inclusions": []})
+
+    monkeypatch.setattr(session, "shapes_message", shapes)
+
+    async def act(client: Client) -> None:
+        page = await opened_page(client)
+        await page.until(lambda: "frame" in page.last)
+        await asyncio.to_thread(of_first.wait, 10.0)
+        await page.do("sample", number=1)
+        await page.until(lambda: "sample 1" in page.last["scene"]["title"])
+        go_on.set()
+        await page.until(lambda: "shapes" in page.last)
+        assert "sample 1" in page.last["shapes"]["of"]
+
+    with_client(opened_content(made_up_store(tmp_path)), act)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import shutil
 from dataclasses import replace
 from pathlib import Path
@@ -10,14 +11,15 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, made_up_store, taxel_forces
+from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, made_up_store, resized, taxel_forces
 from made_grasps import response
 
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization.source import readings_of
-from tactsim.live.session.choices import offered_choices, stored_choice
+from tactsim.interfaces.estimate import decimals_of_places
+from tactsim.live.session.choices import StoredEstimate, offered_choices, stored_choice
 from tactsim.live.session.content import opened_content
-from tactsim.live.session.estimating import estimated, frame_readings, shown_signal
+from tactsim.live.session.estimating import NO_ERROR, NO_ERRORS, estimated, frame_readings, shown_signal
 from tactsim.live.session.messages import Scales, frame_message
 from tactsim.live.session.thinking import estimate_message
 from tactsim.live.sources.recorded import result_recordings, source_noise
@@ -112,12 +114,48 @@ def test_the_estimate_of_a_localization_is_offered_first(tmp_path: Path) -> None
         "Sphere at (23.0, 17.0, 12.0) mm, radius 4.0 mm",
         "± (1, 2, 3) mm, radius ± 0.4 mm (one standard deviation)",
         "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm",
+        NO_ERROR,
     ]
     assert found["errors"] == ["Off by 1.0 mm in plan and +0.0 mm in height, radius off by +0.0 mm"]
     assert found["inclusions"][1]["line"] == [[0, 20, 10], [40, 20, 10]]
     change(folder, ("scene", "estimates"), [{"kind": "sphere"}])
     with pytest.raises(StorageError, match="not a complete result of a localization"):
         opened_content(folder)
+
+
+def test_places_in_a_small_block_are_written_as_finely_as_in_a_large_one(tmp_path: Path) -> None:
+    """In a block of 0.4 mm they were rounded to tenths of a millimetre, and every one was off by 0.0 mm."""
+    small = write_result(resized(made_up_grasp(), (0.01, 0.01, 0.01)), tmp_path / "a", case_id="abc", provenance={})
+    recording = result_recordings(small)["taxel_force"]
+    choice = BY_NAME["thesis"]
+    found = estimated(recording.scene, frame_readings(recording.scene, recording.at(1.0), choice, None), choice, None)
+    assert re.fullmatch(r"At \(0\.\d{3}, 0\.\d{3}, 0\.\d{3}\) mm", found["words"][1])
+    assert re.match(r"Off by 0\.0\d{2} mm in plan and [+-]0\.0\d{2} mm in height", found["errors"][0])
+    assert [decimals_of_places(np.array([1.0, side, 0.1]) * 1e-3) for side in (40.0, 10.0, 9.0, 0.9)] == [1, 1, 2, 2]
+
+
+def test_that_no_error_is_stated_of_several_places_is_said_once(tmp_path: Path) -> None:
+    apart = np.full((1, 2, 3, 3), 0.1)
+    apart[0, :, 0, 0] = apart[0, :, 2, 2] = 0.6
+    recording = result_recordings(grasp_folder(tmp_path, apart))["taxel_force"]
+    choice = BY_NAME["thesis"]
+    words = estimated(recording.scene, frame_readings(recording.scene, recording.frame(0), choice, None), choice, None)["words"]
+    assert sum(" at (" in line.lower() or line.startswith("At (") for line in words) == 2
+    assert [line for line in words if "No error" in line] == [NO_ERRORS]
+
+
+def test_a_stored_estimate_without_a_contrast_keeps_its_error(tmp_path: Path) -> None:
+    """That of the learned estimator: place and radius with their covariance."""
+    folder = localized_folder(tmp_path)
+    stored = json.loads((folder / "result.json").read_text())
+    del stored["quantities"]["contrast_deviation"]
+    change(folder, ("quantities",), stored["quantities"])
+    choice = stored_choice(folder)
+    assert choice is not None
+    assert isinstance(choice.estimator, StoredEstimate)
+    covariance = choice.estimator.stored.inclusions[0].covariance
+    assert covariance is not None
+    np.testing.assert_allclose(np.sqrt(np.diag(covariance)), [1e-3, 2e-3, 3e-3, 4e-4])
 
 
 def change(folder: Path, place: tuple[str | int, ...], value: object) -> Path:

@@ -6,12 +6,16 @@ from itertools import pairwise
 import numpy as np
 import pytest
 from made_grasps import LAYOUT, NOISE, SIZE, made_samples, response
+from scenes import grasp_scene
 
 from tactsim.dataset.ranking import training
 from tactsim.dataset.ranking.measures import measures, outcomes
 from tactsim.errors import InputError, StorageError
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.live.session.choices import Choice
+from tactsim.live.session.estimating import estimated
+from tactsim.live.sources.scene import PageScene
 from tactsim.localization.estimators.learned import LearnedEstimator
 from tactsim.localization.networks import LearnedWeights, Network, inputs, read_weights
 from tactsim.units import format_quantity
@@ -56,7 +60,13 @@ def test_weights_are_read_as_they_were_written(tmp_path):
         assert np.array_equal(one, other)
     estimate = LearnedEstimator.checked(path).estimate(given)
     assert estimate.present
-    assert estimate.inclusions[0].region.contains(np.array(estimate.inclusions[0].center))
+    (ball,) = estimate.inclusions
+    assert ball.region.contains(np.array(ball.center))
+    np.testing.assert_array_equal(ball.covariance, loaded.place(features)[1])
+    scene = PageScene("", grasp_scene(SIZE.tolist(), LAYOUT))
+    shown = estimated(scene, given, Choice("learned", "Learned", LearnedEstimator.checked(path), True), None)
+    assert shown["words"][2].startswith("± (")
+    assert shown["words"][2].endswith("(one standard deviation)")
     assert not LearnedEstimator.checked(kept(tmp_path, weights(bias=-5.0))).estimate(given).present
 
 

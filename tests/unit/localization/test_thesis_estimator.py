@@ -134,6 +134,10 @@ def test_estimates_that_contradict_themselves_are_refused():
         Estimate(False, (lump,), "")
     with pytest.raises(InvalidQuantity, match=r"probability 1\.5"):
         Estimate(True, (lump,), "", 1.5)
+    assert EstimatedInclusion("sphere", (0.0, 0.0, 0.0), covariance=np.eye(4)).contrast is None
+    for contrast, size in ((None, 3), (1.0, 4)):
+        with pytest.raises(InvalidQuantity, match=r"\(4, 4\) without a contrast"):
+            EstimatedInclusion("sphere", (0.0, 0.0, 0.0), contrast=contrast, covariance=np.eye(size))
     with pytest.raises(InvalidQuantity, match=r"\(5, 5\)"):
         EstimatedInclusion("sphere", (0.0, 0.0, 0.0), covariance=np.eye(3))
     with pytest.raises(InvalidQuantity, match="radius -1"):

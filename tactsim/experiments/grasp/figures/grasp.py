@@ -8,15 +8,15 @@ from matplotlib.figure import Figure
 
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, VOLTAGE, has_taxels
 from tactsim.experiments.grasp.figures.history import draw_histories, has_history, panels
-from tactsim.experiments.grasp.figures.maps import draw_maps, draw_plan
+from tactsim.experiments.grasp.figures.maps import MapsLayout, draw_maps, draw_plan
 from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, loaded_taxels
-from tactsim.experiments.grasp.figures.section import draw_section
+from tactsim.experiments.grasp.figures.section import draw_section, section_size
 from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, voltages_figure
 from tactsim.experiments.grasp.figures.view import VIEW, view_figure, view_rendering
 from tactsim.experiments.grasp.figures.viewed import viewed
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
-from tactsim.experiments.grasp.scene import SimulatedGrasp
+from tactsim.experiments.grasp.scene import GraspScene, SimulatedGrasp
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.plotting.canvas import SKETCH, Plot, result_figure
 from tactsim.plotting.rendered_plot import RenderedPlot
@@ -64,15 +64,16 @@ def sketch_figure(result: Result) -> Figure:
 
 def section_figure(result: Result) -> Figure:
     """The section through the deformed block, between the jaws."""
-    with result_figure(result, (9.0, 5.2), TITLE, where=WHERE) as figure:
+    with result_figure(result, section_size(result), TITLE, where=WHERE) as figure:
         draw_section(figure.add_subplot(), result)
     return figure
 
 
 def maps_figure(result: Result) -> Figure:
     """The pressure on every taxel of both jaws."""
-    with result_figure(result, (9.0, 5.0), TITLE, where=WHERE) as figure:
-        draw_maps(figure.subplots(1, 2), loaded_taxels(result))
+    layout = MapsLayout.of(result.scene_as(GraspScene))
+    with result_figure(result, layout.size, TITLE, where=WHERE) as figure:
+        draw_maps(figure.subplots(layout.rows, layout.columns).tolist(), loaded_taxels(result))
     return figure
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -22,17 +23,49 @@ from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on
 from tactsim.plotting.plane_cut import OUTER, interfaces
 from tactsim.results import Result
 
-MOST_NAMED = 5
-"""Matrices with more rows or columns than this have the first and the last one named."""
+MOST_NAMED, NAME = 5, 0.42
+"""Matrices with more rows or columns than this, or with a smaller pitch in inches, have the first and the last one named."""
 MOST_BORDERED = 100
 """Matrices with more taxels than this have no borders, which would cover the colours."""
-FITTING, LARGEST, SMALLEST = 30.0, 9.0, 3.0
-"""Points of the letters with which a pressure fills a taxel as wide as a map, of the largest, and of the smallest written."""
+FITTING, LARGEST, SMALLEST = 9.8, 9.0, 3.0
+"""Points of the letters with which a pressure fills a taxel of an inch, of the largest, and of the smallest written."""
+MAP, WIDEST, HIGHEST = 3.05, 7.0, 2.4
+"""Longer side in inches of a map beside the other, and width and height within which a map below the other stays."""
+WIDE, LONGEST = 2.0, 2.0
+"""Width over depth of maps that stand below each other, and depth over width from which on a map is no longer drawn longer."""
+WIDTH, AROUND_MAPS, BETWEEN_MAPS = 9.0, 1.95, 0.7
+"""Width in inches of the figure, and height of its title and colours, and of what is between maps below each other."""
 ROUND_OFF = 1e-9
 """Relative distance from the upper face of a node that lies on it."""
 BESIDE = 0.6
 """Distance of the names of rows and columns from the jaw, in `drawn_millimetre`; so is that of the axes, `AROUND`."""
 AROUND = 1.0
+
+
+@dataclass(frozen=True)
+class MapsLayout:
+    """How the two maps stand in their figure; lengths in inches.
+
+    Attributes
+    ----------
+    rows, columns : of the maps
+    longer_side : of each map
+    size : of the figure
+    """
+
+    rows: int
+    columns: int
+    longer_side: float
+    size: tuple[float, float]
+
+    @classmethod
+    def of(cls, scene: GraspScene) -> MapsLayout:
+        """Beside each other, or if they are wide below each other."""
+        wide, deep = np.max([high - low for low, high in (_extent(scene, side) for side in JAWS)], axis=0).tolist()
+        rows = 2 if wide > WIDE * deep else 1
+        side = min(WIDEST, HIGHEST * wide / deep) if rows > 1 else MAP * min(max(deep / wide, 1.0), LONGEST)
+        height = AROUND_MAPS + rows * side * min(deep / wide, 1.0) + BETWEEN_MAPS * (rows - 1)
+        return cls(rows, 3 - rows, side, (WIDTH, height))
 
 
 def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
@@ -41,11 +74,14 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
     for axis, side in zip(axes, JAWS, strict=True):
         _draw_matrix(axis, grasp, side, scale)
         _draw_surroundings(axis, grasp.scene, side, bodies)
-        total = float(grasp.forces[side].sum())
-        axis.set_title(f"{side} jaw ({LETTERS[side]}): {total:.3g} N on the taxels", loc="left")
+        factor, unit = grasp.force_scale
+        axis.set_title(f"{side} jaw ({LETTERS[side]}): {factor * grasp.forces[side].sum():.3g} {unit} on the taxels", loc="left")
         _seen_from_above(axis)
         axis.tick_params(length=2.5)
-    axes[1].set_ylabel("")
+    if MapsLayout.of(grasp.scene).columns > 1:
+        axes[1].set_ylabel("")
+    else:
+        axes[0].set_xlabel("")
     bar = axes[0].figure.colorbar(
         ScalarMappable(scale.norm, PRESSURE_COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
     )
@@ -88,7 +124,7 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
     layout, place = grasp.scene.matrix, grasp.scene.place(side)
     columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
     colours, size = matplotlib.colormaps[PRESSURE_COLOURS], 1e3 * layout.size
-    large = _letters(grasp.scene, side)
+    large, (per_newton, force_unit) = _letters(grasp.scene, side), grasp.taxel_force_scale
     border = 0.6 if grasp.pressures[side].size <= MOST_BORDERED else 0.0
     squares: list[Rectangle] = []
     for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
@@ -107,26 +143,31 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
         x, y = corner[0] + size / 2, corner[1] + size / 2
         written = f"{scale.factor * pressure:#.3g}".rstrip(".")
         axis.text(x, y, f"{written} {scale.unit}", va="bottom", fontsize=large, fontweight="bold", **style)
-        force = f"{grasp.forces[side][row, column]:#.2g}".rstrip(".")
-        axis.text(x, y - 0.06 * size, f"{force} N", va="top", fontsize=0.72 * large, **style)
+        force = f"{float(f'{per_newton * grasp.forces[side][row, column]:.2g}'):g}"
+        axis.text(x, y - 0.06 * size, f"{force} {force_unit}", va="top", fontsize=0.72 * large, **style)
     axis.add_collection(PatchCollection(squares, match_original=True, zorder=2))  # thousands one by one take a minute
     named: dict[str, Any] = {"fontsize": 7, "color": "#57606a"}
     right, back = _extent(grasp.scene, side)[1] + BESIDE * drawn_millimetre(grasp.scene.size)
-    for number in _named(layout.rows):
+    every = layout.pitch * _inches_per_metre(grasp.scene, side) > NAME
+    for number in _named(layout.rows, every=every):
         axis.text(right, rows[number - 1].mean(), f"row {number}", ha="left", va="center", **named)
-    for number in _named(layout.columns):
+    for number in _named(layout.columns, every=every):
         axis.text(columns[number - 1].mean(), back, f"col. {number}", ha="center", va="bottom", **named)
 
 
 def _letters(scene: GraspScene, side: str) -> float:
     """Size in points of the letters with which a pressure and its unit fit into a taxel."""
+    return min(FITTING * scene.matrix.size * _inches_per_metre(scene, side), LARGEST)
+
+
+def _inches_per_metre(scene: GraspScene, side: str) -> float:
     low, high = _extent(scene, side)
-    return min(FITTING * 1e3 * scene.matrix.size / float(np.max(high - low)), LARGEST)
+    return MapsLayout.of(scene).longer_side * 1e3 / float(np.max(high - low))
 
 
-def _named(count: int) -> list[int]:
-    """Numbers of the rows or columns that are named: all of a few, else the first and the last."""
-    return list(range(1, count + 1)) if count <= MOST_NAMED else [1, count]
+def _named(count: int, *, every: bool) -> list[int]:
+    """Numbers of the rows or columns that are named: all of a few if there is room for every one, else the first and the last."""
+    return list(range(1, count + 1)) if count <= (MOST_NAMED if every else 1) else [1, count]
 
 
 def _extent(scene: GraspScene, side: str) -> tuple[Array, Array]:

@@ -21,6 +21,8 @@ TITLE, WHERE = "Grasp", "; the last accepted step is shown"
 """Title of a grasp without one, and what is said of one that did not end as it should."""
 LETTERS = {"upper": "U", "lower": "L"}
 """How the thesis's Fig. 6.3 calls the taxels of each jaw."""
+READ_IN_NEWTONS = 0.01
+"""Least force in N of the taxel that carries most that is written in N."""
 TAXEL_COLOUR = "#e69f00"
 USUAL_SIDE = 40e-3
 """Longest side in m of a block in whose pictures lengths are drawn as they are given."""
@@ -54,6 +56,17 @@ class LoadedTaxels:
     scene: GraspScene
     pressures: Mapping[str, Array]
     forces: Mapping[str, Array]
+
+    @property
+    def force_scale(self) -> tuple[float, str]:
+        """Factor and unit in which the force on all taxels of a jaw reads well."""
+        return scale_of(max(float(np.abs(self.forces[side].sum())) for side in JAWS), "N")
+
+    @property
+    def taxel_force_scale(self) -> tuple[float, str]:
+        """Factor and unit in which the largest force on any taxel reads well; from 10 mN on it is N."""
+        largest = max(float(np.max(self.forces[side])) for side in JAWS)
+        return (1.0, "N") if READ_IN_NEWTONS <= largest < 1e3 else scale_of(largest, "N")
 
     @property
     def largest_pressure(self) -> float:

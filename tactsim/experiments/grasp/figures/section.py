@@ -19,7 +19,13 @@ from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut, regions_of
 from tactsim.results import FieldFrame, Result
 from tactsim.results.fields import CORNER_PRESSURE, PRESSURE
 
-JAW_SHOWN = 2.6
+WIDTH, SURROUNDINGS, DRAWN, LOWEST, HIGHEST = 9.0, 2.2, 5.7, 3.2, 8.0
+"""Width in inches of the figure of a section, height of its title, ticks and colours, width of what is drawn, and the least and
+largest height of the figure.
+"""
+BESIDE = 1.16
+"""Width of the picture over that of the undeformed block."""
+JAW_SHOWN = 3.3
 """Height of the jaws in the picture, in `drawn_millimetre`."""
 TAXEL_SHOWN = 0.55
 """Height of a taxel's mark in the jaw's face, in `drawn_millimetre`."""
@@ -30,6 +36,8 @@ GRID = 250
 MOST_NAMED = 12
 """Taxels along a cut of which each is named; of more, every so many."""
 INCLUSION_COLOUR = "#000000"
+NAME_LETTER, NAME_APART = 0.011, 6.0
+"""Width of a letter of an inclusion's name, with some room, over that of the picture, and distance in points of one beside it."""
 
 
 @dataclass(frozen=True)
@@ -56,6 +64,15 @@ def cutting_plane(frame: FieldFrame, size: Array) -> CuttingPlane:
     extent = np.ptp(reached, axis=0)
     axis = 0 if extent[0] > LONGER * extent[1] else 1
     return CuttingPlane(axis, float((reached[:, axis].min() + reached[:, axis].max()) / 2), number)
+
+
+def section_size(result: Result) -> tuple[float, float]:
+    """Width and height in inches of the figure of a section: that of a wide thin block is low, that of a tall one is high."""
+    scene = result.scene_as(GraspScene)
+    along = 1 - cutting_plane(result.frames[-1], scene.size).across
+    shown = 1e3 * scene.size[2] + 2 * JAW_SHOWN * drawn_millimetre(scene.size)
+    height = SURROUNDINGS + DRAWN * float(shown / (BESIDE * 1e3 * scene.size[along]))
+    return WIDTH, float(np.clip(height, LOWEST, HIGHEST))
 
 
 def draw_section(axis: Axes, result: Result) -> None:
@@ -104,7 +121,7 @@ def _draw_regions(axis: Axes, cut: PlaneCut) -> None:
     """Tissue and inclusions, each in its colour."""
     regions = cut.values.mean(axis=1).round().astype(int)
     colours = np.array(REGION_COLOURS)[regions % len(REGION_COLOURS)]
-    style: dict[str, Any] = {"facecolors": colours, "edgecolors": "face", "linewidths": 0.2, "rasterized": True}
+    style: dict[str, Any] = {"facecolors": colours, "edgecolors": "face", "linewidths": 0.7, "rasterized": True}
     axis.add_collection(PolyCollection(list(1e3 * cut.triangles), **style))
 
 
@@ -117,18 +134,19 @@ def _draw_outlines(axis: Axes, cut: PlaneCut, result: Result) -> None:
     axis.add_collection(LineCollection(list(segments[inner]), colors=INCLUSION_COLOUR, linewidths=1.2, capstyle="round"))
     for number in sorted({int(k) for k in cut.between[inner].max(axis=1)}):
         ends = segments[(cut.between == number).any(axis=1)].reshape(-1, 2)
-        middle = (ends.min(axis=0) + ends.max(axis=0)) / 2
-        box = {"boxstyle": "round,pad=0.2", "facecolor": "w", "edgecolor": "none", "alpha": 0.8}
-        axis.text(
-            middle[0],
-            middle[1],
-            result.scene_as(GraspScene).named_inclusion(number),
-            ha="center",
-            va="center",
-            fontsize=8,
-            bbox=box,
-            zorder=4,
-        )
+        _name_inclusion(axis, result.scene_as(GraspScene).named_inclusion(number), ends, segments[..., 0])
+
+
+def _name_inclusion(axis: Axes, name: str, ends: Array, block: Array) -> None:
+    """The name in an outline through points (n, 2) in mm, or beside one that it would hide in a block that has these x in mm."""
+    (left, bottom), (right, top) = ends.min(axis=0), ends.max(axis=0)
+    width = NAME_LETTER * len(name) * np.ptp(block)
+    place, side, align = (left + right) / 2, 0.0, "center"
+    if right - left < width:
+        place, side, align = (right, 1.0, "left") if right + width < block.max() else (left, -1.0, "right")
+    box = {"boxstyle": "round,pad=0.2", "facecolor": "w", "edgecolor": "none", "alpha": 0.8}
+    style: dict[str, Any] = {"ha": align, "va": "center", "fontsize": 8, "bbox": box, "zorder": 4}
+    axis.annotate(name, (place, (bottom + top) / 2), (NAME_APART * side, 0.0), textcoords="offset points", **style)
 
 
 def _window(cut: PlaneCut, scene: GraspScene) -> tuple[tuple[float, float], tuple[float, float]]:

@@ -28,6 +28,7 @@ def draw_taxel_numbers(axis: Axes, grasp: ViewedGrasp) -> None:
     for side, place, signal in zip(JAWS, PLACES, grasp.signal, strict=True):
         small: Any = axis.inset_axes((*place, SIDE, SIDE))
         small.imshow(signal, cmap=PRESSURE_COLOURS, norm=norm, origin="lower")
+        small.set_anchor("N")
         for (row, column), value in np.ndenumerate(signal):
             style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": size, "color": ink_on(colours(norm(value)))}
             small.text(column, row, f"{factor * value:.3g}", in_layout=False, **style)

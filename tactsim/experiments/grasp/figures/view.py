@@ -38,6 +38,10 @@ BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1]
 _SIDES = np.array([[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]])
 BOX_TRIANGLES = _SIDES[:, [[0, 1, 2], [0, 2, 3]]].reshape(-1, 3)
 """Corners (8, 3) of a box with sides of 1, and its triangles (12, 3) as seen from outside."""
+NAME_LETTER, NAME_LINE, NAME_APART = 16.0, 30.0, 8.0
+"""Width of a letter and height of a line of an inclusion's name in pixels of the view, and distance of a name beside an inclusion
+that it would hide.
+"""
 VIEW = "grasp_view.png"
 """File name of the view."""
 
@@ -156,7 +160,7 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
         beyond = corner + 1.18 * (end - begin)
         axis.text(beyond[0], beyond[1], name, ha="center", va="center")
     words = f"arrows: {format_quantity(length, 'm')}"
-    axis.text(0.0, -0.06, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
+    axis.text(0.0, -0.1, words, transform=axis.transAxes, ha="left", va="top", fontsize=7.5)
     for side in JAWS:
         jaw = grasp.scene.jaws[side]
         plate_corner = np.array([-jaw.width / 2, -jaw.depth / 2, PLATE * float(grasp.scene.size[2]) / 2])
@@ -165,9 +169,17 @@ def annotate(axis: Axes, grasp: LoadedTaxels, camera: Camera) -> None:
 
 
 def _name_inclusions(axis: Axes, result: Result, camera: Camera) -> None:
-    """The names of the inclusions where they lie."""
+    """The names of the inclusions where they lie, beside small ones, and each below the one that it would stand on."""
     frame, rim = result.frames[-1], [withStroke(linewidth=2.5, foreground="w")]
-    for number, nodes in inclusions_of(frame).items():
-        x, y = camera.project(deformed(frame)[nodes].mean(axis=0)[None])[0]
+    style: dict[str, Any] = {"va": "center", "ha": "left", "fontsize": 8.5, "fontweight": "bold", "path_effects": rim}
+    named: list[tuple[float, float, float]] = []
+    shown = [(k, camera.project(deformed(frame)[nodes])) for k, nodes in inclusions_of(frame).items()]
+    for number, points in sorted(shown, key=lambda inclusion: float(inclusion[1][:, 1].mean())):
         name = result.scene_as(GraspScene).named_inclusion(number)
-        axis.text(x, y, name, ha="center", va="center", fontsize=8.5, fontweight="bold", path_effects=rim)
+        width, (x, y) = NAME_LETTER * len(name), points.mean(axis=0).tolist()
+        left = x - width / 2 if np.ptp(points[:, 0]) > width else float(points[:, 0].max()) + NAME_APART
+        for other, end, line in named:
+            if left < end and other < left + width:
+                y = max(y, line + NAME_LINE)
+        named.append((left, left + width, y))
+        axis.text(left, y, name, **style)

@@ -27,8 +27,14 @@ from tactsim.plotting.canvas import PRESSURE_COLOURS, despined, result_figure, s
 from tactsim.results import Result
 
 VIEWS = "views.png"
-JAW, ROOM = 1.2, 1.0
-"""Thickness with which a jaw is drawn, and room around the drawing, in `drawn_millimetre`."""
+JAW, NUMBER, ROOM = 1.2, 0.3, 1.0
+"""Thickness with which a jaw is drawn, room for the numbers on it, and room around the drawing, in `drawn_millimetre`."""
+WIDTH, SURROUNDINGS = 10.4, 2.4
+"""Width in inches of the figure, and height of its title, ticks and scales of colours."""
+COLUMN, TOP_ROW, LOWER_ROW, HIGHEST = 3.9, 4.1, 1.4, 8.0
+"""Width in inches of each column of pictures, height of the upper row, which the words beside it need, and least and largest
+height of the lower row.
+"""
 MOST_INTERVALS = 5
 """Between the ticks of an axis or of the colours."""
 REGION_DASHES: Any = (0, (1.5, 1.5))
@@ -38,6 +44,8 @@ ESTIMATE = "#d1242f"
 MOST_NAMED = 8
 """Taxels along a jaw up to which each is numbered."""
 
+BEYOND = JAW + NUMBER + ROOM
+"""Room above and below the block in the views that show the jaws, in `drawn_millimetre`."""
 NUMBERS_TOP, LINE_HEIGHT, CLOSEST = 0.5, 0.041, 0.75
 """Top of the numbers of the taxels and height of a line of the findings, over the height of the axes, and the least part of that
 height on which lines stay apart; beyond it the letters shrink.
@@ -91,9 +99,10 @@ def views_figure(result: Result, grasp: ViewedGrasp) -> Figure:
     left = View(pressures.left, 0, 1, 2, layout.columns, "left view: sums over the columns")
     top = View(pressures.top, 2, 0, 1, len(JAWS), "top view: sums of both jaws")
     x, y, z = 1e3 * grasp.scene.size / drawn_millimetre(grasp.scene.size)
-    size = (10.4, 2.6 + 8.0 * (y + z + 3 * JAW) / (x + y + 2))
-    with result_figure(result, size, "Three views of the grasp") as figure:
-        axes: Any = figure.subplots(2, 2, width_ratios=(y, x), height_ratios=(y + 2 * ROOM, z + 2 * JAW + 2 * ROOM))
+    scale = COLUMN / max(x, y)
+    heights = max(TOP_ROW, scale * (y + 2 * ROOM)), float(np.clip(scale * (z + 2 * BEYOND), LOWER_ROW, HIGHEST))
+    with result_figure(result, (WIDTH, SURROUNDINGS + sum(heights)), "Three views of the grasp") as figure:
+        axes: Any = figure.subplots(2, 2, height_ratios=heights)
         for axis, view in ((axes[1, 1], front), (axes[1, 0], left), (axes[0, 1], top)):
             _draw(axis, view, grasp)
         axes[1, 0].invert_xaxis()
@@ -128,12 +137,11 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
         axis.contour(first, second, distance, levels=[0.0], colors=["k"], linewidths=1.1, linestyles="--", zorder=6)
     _draw_estimates(axis, view, grasp)
     unit = drawn_millimetre(grasp.scene.size)
-    room, beyond = ROOM * unit, (JAW + ROOM if view.away != 2 else ROOM) * unit
+    room, beyond = ROOM * unit, (BEYOND if view.away != 2 else ROOM) * unit
     low_x, high_x = min(0.0, extent[0]), max(size[view.horizontal], extent[1])
     axis.set(xlim=(low_x - room, high_x + room), ylim=(-beyond, size[view.vertical] + beyond), aspect="equal")
-    axis.set(
-        xlabel="" if view.away == 2 else f"{'xyz'[view.horizontal]} in mm", ylabel=f"{'xyz'[view.vertical]} in mm (undeformed)"
-    )
+    right, above = (f"{'xyz'[along]} in mm" for along in (view.horizontal, view.vertical))
+    axis.set(xlabel="" if view.away == 2 else f"{right} (undeformed)", ylabel=above)
     axis.locator_params(nbins=MOST_INTERVALS)
     axis.set_title(view.what, loc="left")
     despined(axis)

@@ -46,6 +46,7 @@ class PressedSection:
     sides : 1.0, and -1.0 too if the mirror image of the tissue is shown
     meshed : those of the sides on which elements are drawn
     turn : matrix (3, 3) from the axes of the body to those of the tissue; None for an axisymmetric section
+    along : horizontal axis of a section of tissue in space, 0 or 1
     """
 
     section: Section
@@ -55,6 +56,7 @@ class PressedSection:
     sides: tuple[float, ...]
     meshed: tuple[float, ...]
     turn: Array | None = None
+    along: int = 0
 
     def draw(self, axis: Axes, xlabel: str, title: str, *, at_rest: bool) -> None:
         """Everything, with the pressure in colours, or at rest with the regions."""
@@ -85,14 +87,16 @@ class PressedSection:
         mirrored, (left, right) = self.turn is None, self.limits[0]
         x, z = np.meshgrid(np.linspace(0.0 if mirrored else left, right, GRID), np.linspace(*self.limits[1], GRID))
         points = np.zeros((2 if mirrored else 3, x.size))
-        points[0], points[-1] = x.ravel(), z.ravel() - self.height
+        points[self.along], points[-1] = x.ravel(), z.ravel() - self.height
         distance = self.scene.body.signed_distance(points * 1e-3)[0].reshape(x.shape)
         draw_body(axis, distance, (x, z), sides=(-1.0, 1.0) if mirrored else (1.0,))
 
     def _draw_sensor(self, axis: Axes, recess: float, hole: float) -> None:
         """The plane of the inner sensor across the hole, with its recess."""
-        ends = (np.eye(3) if self.turn is None else self.turn) @ np.array([[-hole, hole], [0.0, 0.0], [recess, recess]])
-        x, z = 1e3 * ends[0], 1e3 * ends[2] + self.height
+        ends = np.zeros((3, 2))
+        ends[self.along], ends[2] = (-hole, hole), recess
+        ends = (np.eye(3) if self.turn is None else self.turn) @ ends
+        x, z = 1e3 * ends[self.along], 1e3 * ends[2] + self.height
         axis.plot(x, z, color=SENSOR_COLOUR, linewidth=1.8, zorder=4)
         words = f"inner sensor\n{format_quantity(recess, 'm')} above\nthe face"
         style: dict[str, Any] = {"ha": "center", "va": "bottom", "color": SENSOR_COLOUR, "fontsize": 7, "zorder": 5}

@@ -44,10 +44,10 @@ def _draw_around(axis: Axes, result: Result) -> None:
     pressure = result.quantities["pressure_around"].numbers
     factor, unit = scale_of(float(np.abs(pressure).max()), "Pa")
     edges = np.linspace(0.0, 360.0, len(pressure) + 1)
-    axis.stairs(factor * pressure, edges, color=FORCE_COLOUR, linewidth=1.5)
+    axis.stairs(factor * pressure, edges, baseline=None, color=FORCE_COLOUR, linewidth=1.5)
     axis.axhline(factor * pressure.mean(), color=FORCE_COLOUR, linewidth=0.8, linestyle=":")
-    axis.set(xlabel="angle about the annulus's axis in degrees", ylabel=f"pressure in {unit}", xlim=(0, 360))
+    axis.set(xlabel="angle about the annulus's axis in degrees, 0 at +x, 90 at +y", ylabel=f"pressure in {unit}", xlim=(0, 360))
     axis.set_xticks(range(0, 361, 90))
     axis.set_ylim(min(0.0, 1.1 * factor * float(pressure.min())), max(1e-9, 1.15 * factor * float(pressure.max())))
-    axis.set_title("mean pressure on sectors of the annulus", loc="left")
+    axis.set_title("mean pressure on sectors of the annulus (dotted: on all)", loc="left")
     despined(axis)

@@ -97,7 +97,7 @@ def draw_regions(axis: Axes, section: Section, sides: tuple[float, ...]) -> None
     for side in sides:
         corners = (section.places * [side, 1.0])[quarters]
         colours = np.repeat(shades[regions], len(QUARTERS))
-        axis.add_collection(PolyCollection(list(corners), facecolors=colours, edgecolors="face", linewidths=0.2, rasterized=True))
+        axis.add_collection(PolyCollection(list(corners), facecolors=colours, edgecolors="face", linewidths=0.7, rasterized=True))
     if len(shades) > 1:
         names = [*(f"layer {k}" for k in range(1, len(shades))), "tissue below"]
         patches = [Patch(facecolor=shade, label=name) for shade, name in zip(shades, names, strict=True)]

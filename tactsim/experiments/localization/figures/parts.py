@@ -9,6 +9,8 @@ import numpy as np
 
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, viewed
 from tactsim.experiments.localization.scene import LocalizedGrasp
+from tactsim.interfaces.estimate import decimals_of_places
+from tactsim.plotting.canvas import with_minus
 from tactsim.results import Result
 
 LINE = 70
@@ -33,7 +35,8 @@ def _contrast(result: Result) -> str:
         for name in ("estimated_contrast", "contrast_deviation")
     )
     spread = f" ± {deviation:.2g}" if np.isfinite(deviation) else ""
-    return f"{'Softer' if value < 0 else 'Stiffer'} than the tissue at this closing: contrast {value:+.2g}{spread}, 0 is tissue"
+    words = f"contrast {with_minus(f'{value:+.2g}')}{spread}, 0 is tissue"
+    return f"{'Softer' if value < 0 else 'Stiffer'} than the tissue at this closing: {words}"
 
 
 def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
@@ -41,16 +44,19 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
     quantities = result.quantities
     if not quantities["present"].value:
         return ("Nothing there.",)
-    places = [f"({', '.join(f'{1e3 * value:.1f}' for value in estimate.center)}) mm" for estimate in scene.estimates]
+    digits = decimals_of_places(scene.size)
+    places = [f"({', '.join(f'{1e3 * value:.{digits}f}' for value in estimate.center)}) mm" for estimate in scene.estimates]
     lines = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities or len(places) > 1 else []
     lines = [part for line in lines for part in wrap(line, LINE)]
     lines += [f"Estimated at {place}" for place in places]
     if "center_deviation" in quantities:
         deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
         lines.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
+    else:
+        lines.append("No error of this place is stated" if len(places) == 1 else "No error of these places is stated")
     if "estimated_contrast" in quantities:
         lines.append(_contrast(result))
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
-        lines.append(f"Off by {lateral:.1f} mm in plan, {round(depth, 1) + 0.0:+.1f} mm in height")
+        lines.append(with_minus(f"Off by {lateral:.{digits}f} mm in plan, {round(depth, digits) + 0.0:+.{digits}f} mm in height"))
     return tuple(lines)

@@ -15,7 +15,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, result_figure, scale_of, with_minus
+from tactsim.plotting.canvas import Plot, despined, ink_on, result_figure, scale_of, with_minus
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
@@ -108,12 +108,10 @@ def _draw_map(axis: Axes, result: Result, noise: int, norm: LogNorm) -> Any:
     axis.set_yticks(np.arange(len(cutoffs)) + 0.5, [f"{value:.3g}" for value in cutoffs])
     if total.size <= MOST_LABELS:
         for row, column in np.ndindex(*total.shape):
-            dark = not norm(total[row, column]) > 0.6
             words = _label(result, (column, noise, row))
             known = np.isfinite(total[row, column])
-            axis.text(
-                column + 0.5, row + 0.5, words, ha="center", va="center", fontsize=7, color="white" if dark and known else "black"
-            )
+            ink = ink_on(drawn.cmap(norm(max(float(total[row, column]), norm.vmin or 0.0)))) if known else "k"
+            axis.text(column + 0.5, row + 0.5, words, ha="center", va="center", fontsize=7, color=ink)
     return drawn
 
 
@@ -176,8 +174,8 @@ def threshold_signal_figure(result: Result) -> Figure:
         axes[0].plot(time, large * result.history_values("plate_force"), ":", color="black", label="force on the plate")
         _draw_signal(axes[1], result, "small", small, SMALL_COLOUR)
         axes[1].plot(time, small * result.history_values("small_force"), ":", color="black", label="force on it")
-        axes[1].axhline(small * capture.trigger_level, color=SMALL_COLOUR, linewidth=0.9, linestyle="--")
-        axes[1].annotate("trigger", (time[0], small * capture.trigger_level), (2, 3), textcoords="offset points", fontsize=8)
+        level: dict[str, Any] = {"color": SMALL_COLOUR, "linewidth": 0.9, "linestyle": "--", "label": "level of the trigger"}
+        axes[1].axhline(small * capture.trigger_level, **level)
         for axis in axes:
             axis.axvline(capture.touch_time, color="0.45", linewidth=0.9, linestyle="-.")
             despined(axis)

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from drawn import text_of
+from drawn import colliding_words, text_of
 from scenes import SOLVER, unmarked_figures
 
 from tactsim.contact.annulus import Annulus
@@ -60,6 +60,21 @@ def test_figure_shows_what_is_seen(symmetry):
     assert ("sectors of the annulus" in written) == (symmetry != "quarter")
 
 
+def test_the_cut_goes_the_way_that_the_body_leans():
+    """In the cut y = 0 of a body that leans about x nothing is pressed."""
+    result = made_up("whole")
+    leaning = result.scene.model_copy(update={"body": Tilted(body=Annulus(), tilt_x=0.1)})
+    assert "cut y = 0" in text_of(Indentation3DFigures().figure(result))
+    figure = Indentation3DFigures().figure(replace(result, scene=leaning))
+    assert "cut x = 0" in text_of(figure)
+    beside = leaning.model_copy(update={"offset": 1e-3})
+    assert "cut y = 0" in text_of(Indentation3DFigures().figure(replace(result, scene=beside)))
+    sensor = next(line for line in figure.axes[0].lines if len(line.get_xdata()) == 2)
+    assert np.ptp(sensor.get_ydata()) == pytest.approx(3.0 * np.sin(0.1))
+    along_y = cut(result.frames[-1], 1)
+    assert len(along_y.cells["triangle6"]) == len(cut(result.frames[-1]).cells["triangle6"])
+
+
 def test_failed_run_is_marked_and_fields_may_be_missing():
     failed = made_up(status=Status.FAILED)
     written = text_of(Indentation3DFigures().figure(replace(failed, frames=())))
@@ -74,3 +89,14 @@ def test_drawings_are_png_and_none_without_steps():
     assert drawings["indentation_3d.png"]().startswith(b"\x89PNG")
     assert unmarked_figures(made_up()) == []
     assert figures_for(replace(made_up(), steps=(), frames=())) == {}
+
+
+@pytest.mark.parametrize("status", [Status.CONVERGED, Status.FAILED])
+def test_the_pressure_around_begins_and_ends_as_it_is_and_its_mean_is_named(status):
+    """The steps fell to zero at 0 and 360 degrees, as if nothing were pressed there."""
+    figure = Indentation3DFigures().figure(made_up("whole", status))
+    axis = next(a for a in figure.axes if "sectors" in a.get_title(loc="left"))
+    (steps,) = axis.patches
+    assert steps.get_path().vertices[:, 1].min() == 4.0
+    assert "dotted: on all" in axis.get_title(loc="left")
+    assert colliding_words(figure) == []

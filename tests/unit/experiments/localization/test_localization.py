@@ -23,6 +23,7 @@ from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.plotting import figures_for
+from tactsim.plotting.canvas import with_minus
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.writing import write_result
 
@@ -135,7 +136,7 @@ def test_the_views_write_what_each_taxel_reads_with_its_row_and_column(folders):
 def test_the_views_say_whether_it_is_softer_or_stiffer_than_the_tissue(contrast, word, folders):
     result = run(folders)
     estimated = {"estimated_contrast": Quantity(contrast, "1", ""), "contrast_deviation": Quantity(0.5, "1", "")}
-    line = f"{word} than the tissue at this closing: contrast {contrast:+.2g} ± 0.5, 0 is tissue"
+    line = with_minus(f"{word} than the tissue at this closing: contrast {contrast:+.2g} ± 0.5, 0 is tissue")
     assert line in localized(replace(result, quantities=result.quantities | estimated)).findings
     assert not [line for line in localized(result).findings if "contrast" in line]
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from drawn import text_of
+from drawn import colliding_words, text_of
 from nested_runs import every_end, pretend_to_end
 from scenes import SOLVER
 
@@ -91,7 +91,11 @@ def test_figures(result):
     words = text_of(threshold_error_figure(result))
     for label in ("lag of the filter", "cut-off of the low pass in Hz", "mean ± standard deviation", "speed in mm/s"):
         assert label in words
-    assert "captured threshold" in text_of(threshold_signal_figure(result))
+    signals = threshold_signal_figure(result)
+    assert "captured threshold" in text_of(signals)
+    assert colliding_words(signals) == []
+    assert "level of the trigger" in [text.get_text() for text in signals.axes[1].get_legend().get_texts()]
+    assert not signals.axes[1].texts, "words beside the line stood on the legend"
 
 
 def test_the_same_seed_gives_the_same_result(usual):
