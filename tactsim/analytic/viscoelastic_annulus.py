@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -11,6 +12,7 @@ from tactsim.analytic.allowed_range import checked
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.analytic.force_factor import force_factor, rise_factor
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
 from tactsim.analytic.histories import History
 from tactsim.analytic.interconversion import maxwell_of
 from tactsim.analytic.layer_kernel import Base
@@ -91,6 +93,11 @@ class ViscoelasticAnnulus:
         """8 a kappa in m: the force per displacement and shear modulus."""
         return 8 * self.outer_radius * self.force_factor
 
+    @cached_property
+    def _shear_relaxation(self) -> GeneralizedMaxwell:
+        """Found once: a run asks for the force after each of its steps."""
+        return maxwell_of(self.shear_compliance)
+
     @property
     def thickness(self) -> float:
         """Of the layer in m; infinite for a half-space."""
@@ -120,7 +127,7 @@ class ViscoelasticAnnulus:
         """
         from tactsim.analytic.response import response
 
-        return self.length * response(maxwell_of(self.shear_compliance), displacement_history, times)
+        return self.length * response(self._shear_relaxation, displacement_history, times)
 
     def creep_displacement(self, force: ArrayLike, times: ArrayLike) -> np.ndarray:
         """Displacement in m at ``times`` in s after a step of ``force`` in N, of the broadcast shape."""
