@@ -14,7 +14,7 @@ from tactsim.registry import kinds
 from tactsim.units import is_unit
 
 RECORDERS = kinds(Recorder)
-LONG = {"indentation", "indentation_3d"}
+LONG = {"indentation", "indentation_3d", "timed_indentation"}
 """Runs of many seconds; tests/unit/dataset holds what is stored of them."""
 
 

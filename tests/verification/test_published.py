@@ -211,6 +211,7 @@ def test_clamped_sheet_on_cells_of_2_5_mm(verification_record):
     verification_record("clamped sheet, cells of 2.5 mm", force, ABAQUS_SHEET, tolerance=0.01, **known)
 
 
+@pytest.mark.slow
 def test_clamped_sheet_falls_with_the_mesh_to_less_than_the_reference():
     force = value(solution("clamped_sheet"), "pulling_force")
     assert_close(force, CONVERGED_SHEET, 5e-4)  # the force on 16 x 8 x 3 cells graded further: the mesh leaves so much

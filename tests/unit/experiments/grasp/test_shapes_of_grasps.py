@@ -47,6 +47,9 @@ SHAPES = {
     "one taxel": Shape((20, 20, 10), TaxelLayout(rows=1, columns=1), (12, 8, 6), 1.0),
 }
 
+QUICK = ("wide and thin", "tall", "many taxels")
+"""Shapes that the quick tests draw: the widest, the highest and the one of most words."""
+
 
 def grasped(shape: Shape, *, pressure: float = PRESSURE, cells: tuple[int, int, int] = CELLS) -> Result:
     """A lump in a block of a shape, pressed alike everywhere."""
@@ -73,7 +76,7 @@ def grasped(shape: Shape, *, pressure: float = PRESSURE, cells: tuple[int, int, 
     return Result("grasp", Status.CONVERGED, "", quantities, steps=steps, frames=(frame,), title="A grasp", scene=scene)
 
 
-@pytest.mark.parametrize("shape", SHAPES)
+@pytest.mark.parametrize("shape", [name if name in QUICK else pytest.param(name, marks=pytest.mark.slow) for name in SHAPES])
 def test_words_keep_clear_of_each_other(shape: str, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(grasp_view, "Rendering", Unrendered)
     result = grasped(SHAPES[shape])
