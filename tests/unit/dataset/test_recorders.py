@@ -177,6 +177,16 @@ def test_stored_times_of_indentations_closer_than_their_steps_are_refused_with_w
     assert layout_of(load_sweep(tmp_path / "sweep.yaml")).named("time_s").sizes == (100,)
 
 
+def test_stored_times_under_a_jump_alone_are_held_against_no_steps(tmp_path: Path) -> None:
+    """It ended in a division by zero."""
+    jump = "{kind: jump, to: 0.1 mm, duration: 2 s}"
+    pieces = "{kind: ramp, to: 0.1 mm, duration: 1 s}, {kind: hold, duration: 1 s}"
+    text = TIMED.replace("PER_DECADE", "5").replace(pieces, jump)
+    assert jump in text
+    (tmp_path / "sweep.yaml").write_text(text, encoding="utf-8")
+    assert layout_of(load_sweep(tmp_path / "sweep.yaml")).named("time_s").sizes == (100,)
+
+
 def test_the_closed_form_is_stored_as_it_is_between_its_points() -> None:
     few, many = (ClosedForm.example().model_copy(update={"points": points}) for points in (4, 2000))
     recorder = ClosedFormRecorder(settings=SweepSettings(samples=1, times=24))
