@@ -13,7 +13,7 @@ from tactsim.interfaces import RigidBody
 from tactsim.mechanics.paths.loading import Loading, pieces_of
 from tactsim.model import FrozenModel
 from tactsim.registry import Registered
-from tactsim.units import Angle, Force, ForcePerVolume, Length, Pressure
+from tactsim.units import Angle, Force, ForcePerVolume, Length, Pressure, format_quantity
 
 AnyBody: Any = Annotated[RigidBody, Registered(RigidBody)]
 
@@ -27,6 +27,11 @@ class Amplitude(Loading):
 
 Within = dict[str, tuple[Length, Length]]
 """Two values of some coordinates, by their names."""
+
+
+def within_in_words(within: Within) -> str:
+    """The part between two values of each coordinate, such as ``z from 0 m to 9 mm``."""
+    return ", ".join(f"{name} from {' to '.join(format_quantity(end, 'm') for end in ends)}" for name, ends in within.items())
 
 
 class Condition(FrozenModel):

@@ -11,7 +11,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.experiments.boundary_value.asked import place_in_words
-from tactsim.experiments.boundary_value.conditions import FaceCondition, Within
+from tactsim.experiments.boundary_value.conditions import FaceCondition, Within, within_in_words
 from tactsim.experiments.boundary_value.geometry import AXES, MEASURES, Dimension, Geometry
 from tactsim.mesh.graded.mapped import Domain
 from tactsim.units import format_quantity
@@ -65,7 +65,9 @@ class Parts:
                 touched &= (along.max(axis=1) > low + slack) & (along.min(axis=1) < high - slack)
             if not inside.any() or (touched & ~inside).any():
                 fault = "ends within cells" if inside.any() else "holds no cell"
-                raise ValueError(f"regions.{number}.within: the part of the body within {within} {fault}; let cells end there")
+                raise ValueError(
+                    f"regions.{number}.within: the part within {within_in_words(within)} {fault}; let cells end there"
+                )
             numbers[inside] = number + 1
         if not regions:
             return self
@@ -119,8 +121,9 @@ class Parts:
         if (cut := facets[touched & ~inside]).size:
             raise ValueError(self._cut_in_words(cut[0], condition))
         if not inside.any():
+            part = within_in_words(condition.within or {})
             raise ValueError(
-                f"within: no facet of {condition.face} lies within {condition.within}; let cells end there, or take a wider part"
+                f"within: no facet of {condition.face} lies within {part}; let cells end there, or take a wider part"
             )
         return facets[inside]
 
@@ -189,4 +192,5 @@ class Parts:
                         f"within.{name}: a cell of {condition.face} reaches from {first} to {last}, across the end at {cut}; "
                         "let cells end there"
                     )
-        return f"within: a cell of {condition.face} lies partly within {condition.within}; let cells end there"
+        part = within_in_words(condition.within or {})
+        return f"within: a cell of {condition.face} lies partly within {part}; let cells end there"

@@ -36,7 +36,7 @@ TURNED = {"kind": "rotation", "face": "top", "angle": 1.0, "sliding": "in_plane"
         (
             {"conditions": [{"kind": "clamped", "face": "top", "within": {"x": [2 * SIDE, 3 * SIDE]}}]},
             "conditions.0.within",
-            "no facet of top lies within",
+            "no facet of top lies within x from 20 mm to 30 mm; let cells end there",
         ),
         (
             {"conditions": [{"kind": "pressure", "face": "top", "pressure": 1.0, "within": {**HALF, "y": [0.0, 0.7 * SIDE]}}]},
@@ -160,7 +160,10 @@ def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
             {"regions": [{"within": {"x": [2 * SIDE, 3 * SIDE]}, "material": RUBBER}]},
             r"regions.0.within: .* holds no cell; let cells end",
         ),
-        ({"regions": [{"within": {"x": [0.0, 0.7 * SIDE]}, "material": RUBBER}]}, "regions.0.within: .* ends within cells"),
+        (
+            {"regions": [{"within": {"x": [0.0, 0.7 * SIDE]}, "material": RUBBER}]},
+            "regions.0.within: the part within x from 0 m to 7 mm ends within cells",
+        ),
         ({"regions": [{"within": {"r": [0.0, SIDE]}, "material": RUBBER}]}, "within: there is no coordinate r; allowed: x, y, z"),
         ({"geometry": ROD, "conditions": [TURNED | {"face": "outer"}]}, "conditions.0.sliding: the face outer is not flat"),
         ({"geometry": BRICK, "conditions": [TURNED]}, "conditions.0.sliding: the plane of top stands across the axis"),
