@@ -16,8 +16,8 @@ PARAMETERS = ("x", "y", "z", "radius", "contrast")
 """Order of the rows and columns of a covariance."""
 LEVEL = 0.9
 """Probability of a region where none is named."""
-
-
+NO_ERROR, NO_ERRORS = "No error of this place is stated", "No error of these places is stated"
+"""Said of a place, or of all of several, whose estimator does not know how far off they may be."""
 USUAL_BLOCK = 10e-3
 """Longest side in m of a block from which on tenths of a millimetre are fine enough for places in it."""
 

@@ -24,7 +24,7 @@ class ComputedSteps:
     straight lines."""
 
     longest: float
-    """Longest step, in SI units of what grows; 0 if nothing changes."""
+    """Longest step, in SI units of what grows."""
     end: float
     """Where the history ends, or the furthest that it may come to, in the same unit."""
     unit: str

@@ -8,7 +8,6 @@ import numpy as np
 
 from tactsim.experiments.boundary_value.motions import Held
 from tactsim.experiments.boundary_value.parts import Parts
-from tactsim.mechanics.models.prescribed_motion import Sliding
 
 ROUND_OFF = 1e-9
 """Change of the volume by a free displacement, over the largest, that is none."""
@@ -25,7 +24,6 @@ def is_confined(parts: Parts, held: Sequence[Held]) -> bool:
     largest = float(np.abs(change).max())
     for one in held:
         change[one.motion.unknowns] = 0.0
-        if isinstance(one.motion, Sliding):
-            slides = one.motion.slides(0.0)
-            slides.add(change, -slides.along(change))
+        slides = one.motion.slides(0.0)
+        slides.add(change, -slides.along(change))
     return bool(np.abs(change).max() <= ROUND_OFF * largest)

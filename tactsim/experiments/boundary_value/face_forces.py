@@ -9,7 +9,6 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.experiments.boundary_value.conditions import FaceCondition
 from tactsim.experiments.boundary_value.posing import PosedProblem
-from tactsim.mechanics.models.prescribed_motion import Sliding
 from tactsim.mechanics.paths.history_path import TimedState
 
 
@@ -56,8 +55,7 @@ def _shares(posed: PosedProblem) -> dict[str, Array]:
     for one in posed.held:
         if one.face is not None:
             prescribes[one.face][one.motion.unknowns] = True
-            if isinstance(one.motion, Sliding):
-                prescribes[one.face][np.concatenate([one.motion.along_x, one.motion.along_x + 1])] = True
+            prescribes[one.face][one.motion.slides(0.0).unknowns] = True
         elif one.condition is not None:
             at_points[one.motion.unknowns] = True
     at_points &= ~np.any(list(prescribes.values()), axis=0)

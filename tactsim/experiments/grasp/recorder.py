@@ -110,13 +110,15 @@ class GraspRecorder(Recorder):
         variables += [reading(name, unit, f"{words}; jaw 0 is the upper", **sizes) for name, (unit, words) in taxels.items()]
         return [*variables, *(reading(name, unit, words, jaw=2) for name, (unit, words) in BESIDE.items())]
 
-    def steps(self, experiment: Grasp) -> ComputedSteps:
-        """Its load steps."""
+    def steps(self, experiment: Grasp) -> ComputedSteps | None:
+        """Its load steps; None if nothing prescribed changes but by jumps."""
         from tactsim.experiments.grasp.path import grasp_intervals  # loads the solver
 
         policy = experiment.time.policy(experiment.materials)
         changing = [interval for interval in grasp_intervals(experiment) if interval.changes]
-        longest = max((policy.largest(interval) for interval in changing), default=0.0)
+        if not changing:
+            return None
+        longest = max(policy.largest(interval) for interval in changing)
         return ComputedSteps(longest, experiment.duration, "s", f"time.steps: {self.settings.times}")
 
     def readings(self, experiment: Grasp, result: Result, generator: np.random.Generator) -> Values:

@@ -27,6 +27,11 @@ class Slides:
     normals: Array
     distances: Array
 
+    @property
+    def unknowns(self) -> Array:
+        """Numbers (2 k,) of their unknowns along both axes."""
+        return np.concatenate([self.first, self.first + 1])
+
     def along(self, values: Array) -> Array:
         """Components (k,) along the normals of values (size,) of all unknowns."""
         return np.asarray(self.normals[0] * values[self.first] + self.normals[1] * values[self.first + 1])

@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.deadline import stopped_by
 from tactsim.errors import InputError
 from tactsim.experiments.localization.source import away_from_truth, with_reference
-from tactsim.interfaces.estimate import Estimate, EstimatedInclusion, decimals_of_places
+from tactsim.interfaces.estimate import NO_ERROR, NO_ERRORS, Estimate, EstimatedInclusion, decimals_of_places
 from tactsim.interfaces.readings import Readings, shown_change
 from tactsim.live.session.choices import STORED, Choice
 from tactsim.live.sources.noise import given_noise
@@ -28,8 +28,6 @@ DIGITS = 3
 """Decimals in mm of an outline."""
 BARE = "From bare forces, in which plain tissue, too, is bright in the middle; a reference removes this effect"
 """Said of an estimate without a reference."""
-NO_ERROR, NO_ERRORS = "No error of this place is stated", "No error of these places is stated"
-"""Said of a place, or of all of several, whose estimator does not know how far off they may be."""
 
 
 def frame_readings(

@@ -28,10 +28,10 @@ def volume_error(body: Body, state: ContactEquilibrium) -> Array:
     return change - body.compliance[:, None] * body.pressure(state.unknowns)
 
 
-def poor_share(body: Body, state: ContactEquilibrium) -> float:
-    """Part of the volume with poor ratios."""
+def poor_share(body: Body, error: Array) -> float:
+    """Part of the volume with poor ratios, of which `volume_error` says (E, Q) how far off they are."""
     weights = body.points.weights
-    return float(weights[np.abs(volume_error(body, state)) > POOR_RATIO].sum() / weights.sum())
+    return float(weights[np.abs(error) > POOR_RATIO].sum() / weights.sum())
 
 
 class VolumeRatios:
@@ -42,9 +42,9 @@ class VolumeRatios:
 
     def poor_share(self, body: Body, state: ContactEquilibrium) -> float:
         """Part of the volume with poor ratios in a state."""
-        share = poor_share(body, state)
+        error = volume_error(body, state)
+        share = poor_share(body, error)
         if share > self.worst:
-            error = volume_error(body, state)
             self.worst, ratios = share, state.kinematics.J[np.abs(error) > POOR_RATIO]
             self._worst_in_words = f"{ratios.min():.3g} to {ratios.max():.3g}, the worst in {_place(body, error)}"
         return share

@@ -14,6 +14,8 @@ from tactsim.fem.equilibrium.constraints import Slides
 
 SAME = 1e-12
 """Difference of two prescribed displacements, over the size of the body, that is round-off."""
+NO_SLIDES = Slides(np.zeros(0, np.int64), np.zeros((2, 0)), np.zeros(0))
+"""Of a motion that holds its nodes along whole axes."""
 
 
 class PrescribedMotion(Protocol):
@@ -30,6 +32,9 @@ class PrescribedMotion(Protocol):
     def values(self, factor: float) -> Array:
         """Displacements (k,) in m at a factor."""
 
+    def slides(self, factor: float) -> Slides:
+        """Nodes that it holds along one direction only at a factor; their numbers are those at any other."""
+
 
 @dataclass(frozen=True)
 class Translation:
@@ -42,6 +47,10 @@ class Translation:
     def values(self, factor: float) -> Array:
         """Displacements (k,) in m."""
         return np.broadcast_to(factor * self.distance, len(self.unknowns))
+
+    def slides(self, factor: float) -> Slides:
+        """None."""
+        return NO_SLIDES
 
 
 @dataclass(frozen=True)
@@ -66,6 +75,10 @@ class Rotation:
         x, y = self.arms.T
         cosine, sine = np.cos(factor * self.angle), np.sin(factor * self.angle)
         return np.concatenate([(cosine - 1) * x - sine * y, sine * x + (cosine - 1) * y])
+
+    def slides(self, factor: float) -> Slides:
+        """None."""
+        return NO_SLIDES
 
 
 @dataclass(frozen=True)
@@ -152,8 +165,7 @@ class PrescribedMotions:
     @property
     def move(self) -> bool:
         """Whether anything moves at the factor one."""
-        turned = any(isinstance(motion, Sliding) and motion.angle != 0 for motion in self._motions)
-        return turned or bool(self.values((1.0,) * len(self._motions)).any())
+        return self.at((1.0,) * len(self._motions)).differs(self.at((0.0,) * len(self._motions)))
 
     def at(self, factors: Sequence[float]) -> Prescribed:
         """All that is prescribed at these factors.
@@ -163,13 +175,10 @@ class PrescribedMotions:
         InputError
             As `values` does.
         """
-        together = zip(self._motions, factors, strict=True)
-        every = [motion.slides(factor) for motion, factor in together if isinstance(motion, Sliding)]
-        slides = None
-        if every:
-            first, distances = (np.concatenate([getattr(one, name) for one in every]) for name in ("first", "distances"))
-            slides = Slides(first, np.concatenate([one.normals for one in every], axis=1), distances)
-        return Prescribed(self.unknowns, self.values(factors), slides)
+        every = [NO_SLIDES, *(motion.slides(factor) for motion, factor in zip(self._motions, factors, strict=True))]
+        first, distances = (np.concatenate([getattr(one, name) for one in every]) for name in ("first", "distances"))
+        slides = Slides(first, np.concatenate([one.normals for one in every], axis=1), distances)
+        return Prescribed(self.unknowns, self.values(factors), slides if len(first) else None)
 
     def values(self, factors: Sequence[float]) -> Array:
         """Displacements (m,) in m of the unknowns.
@@ -193,9 +202,8 @@ class PrescribedMotions:
         """Check that nothing else holds what slides."""
         held = dict.fromkeys(self.unknowns.tolist(), "another condition, or the symmetry of the body,")
         for motion in self._motions:
-            if isinstance(motion, Sliding):
-                sliding = np.concatenate([motion.along_x, motion.along_x + 1]).tolist()
-                for unknown in sliding:
-                    if unknown in held:
-                        raise InputError(f"{motion.name} and {held[unknown]} hold one node; let one of them end beside the other")
-                held |= dict.fromkeys(sliding, motion.name)
+            sliding = motion.slides(0.0).unknowns.tolist()
+            for unknown in sliding:
+                if unknown in held:
+                    raise InputError(f"{motion.name} and {held[unknown]} hold one node; let one of them end beside the other")
+            held |= dict.fromkeys(sliding, motion.name)

@@ -18,7 +18,7 @@ from tactsim.fem.paths.loading import Event, PathFollower, StepControl
 from tactsim.fem.paths.progress import check_steps
 from tactsim.fem.paths.time_steps import TimeControl, TimeEvent, TimeMarcher
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.fields.volume_ratios import POOR_SHARE, poor_share
+from tactsim.mechanics.fields.volume_ratios import POOR_SHARE, poor_share, volume_error
 
 JUMP = StepControl(first=1.0, largest=1.0, smallest=1e-5)
 """Steps of a sudden change, as parts of it: at once if Newton can."""
@@ -212,7 +212,8 @@ class TimedPath:
     def _lost_volume(self, before: TimedState, reached: TimedState) -> bool:
         """Whether more of the body than before misses the volume that its pressure asks for, and than is warned of."""
         body = self._problem.body
-        return poor_share(body, reached.contact) > max(POOR_SHARE, poor_share(body, before.contact))
+        share, earlier = (poor_share(body, volume_error(body, state.contact)) for state in (reached, before))
+        return share > max(POOR_SHARE, earlier)
 
     def _march(
         self, start: TimedState, interval: TimeInterval, event: TimeEvent[TimedState] | None

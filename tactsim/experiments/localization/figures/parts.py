@@ -9,7 +9,7 @@ import numpy as np
 
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, viewed
 from tactsim.experiments.localization.scene import LocalizedGrasp
-from tactsim.interfaces.estimate import decimals_of_places
+from tactsim.interfaces.estimate import NO_ERROR, NO_ERRORS, decimals_of_places
 from tactsim.plotting.canvas import with_minus
 from tactsim.results import Result
 
@@ -53,7 +53,7 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
         deviations = ", ".join(f"{1e3 * value:.2g}" for value in np.asarray(quantities["center_deviation"].value, dtype=float))
         lines.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
     else:
-        lines.append("No error of this place is stated" if len(places) == 1 else "No error of these places is stated")
+        lines.append(NO_ERROR if len(places) == 1 else NO_ERRORS)
     if "estimated_contrast" in quantities:
         lines.append(_contrast(result))
     if "lateral_error" in quantities:
