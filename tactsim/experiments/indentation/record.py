@@ -86,7 +86,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         values |= {
             "displacement": contact.load,
             "reaction_force": float(forces[0][-1]),
-            "base_force": float(model.base_force(contact, state.relaxation)[-1]),
+            "base_force": float(model.base_force(contact)[-1]),
             "max_penetration": max(0.0, *(float(-one.gap(displacement).min()) for one in contact.contacts)),
             "max_pressure": max(float(one.state.pressure.max()) for one in contact.contacts),
             **self.quality.values(model.body, contact),

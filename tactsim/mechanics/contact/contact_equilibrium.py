@@ -53,7 +53,11 @@ random deep indentations searched for 300 solutions among states turned nearly i
 
 @dataclass(frozen=True)
 class ContactEquilibrium:
-    """An accepted state: ``load`` is the displacement in m of the rigid bodies from first touch."""
+    """An accepted state: ``load`` is the displacement in m of the rigid bodies from first touch.
+
+    ``reactions`` (d n,) in N are what contacts and supports exert on the nodes: the internal forces less those of the loads, as
+    `check_accepted` computed them; None of a state that it has not passed.
+    """
 
     load: float
     unknowns: Array
@@ -62,6 +66,7 @@ class ContactEquilibrium:
     contacts: tuple[PosedContact, ...]
     regularisation: Regularisation
     kinematics: Kinematics
+    reactions: Array | None = None
 
 
 @dataclass(frozen=True)

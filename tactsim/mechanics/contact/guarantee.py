@@ -8,7 +8,7 @@ state that breaks the guarantee is taken back and a shorter one tried, as after 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -38,7 +38,7 @@ def guaranteed_equilibrium(
     guess: Array,
     action: Action,
 ) -> ContactEquilibrium:
-    """The state of `contact_equilibrium` with the same arguments, once it has passed `check_accepted`.
+    """The state of `contact_equilibrium` with the same arguments and its reactions, once it has passed `check_accepted`.
 
     Raises
     ------
@@ -47,14 +47,13 @@ def guaranteed_equilibrium(
     """
     reached = contact_equilibrium(problem, state, load, guess, action)
     try:
-        check_accepted(problem, reached, action)
+        return replace(reached, reactions=check_accepted(problem, reached, action))
     except ConvergenceError as error:
         error.solutions = reached.iterations
         raise
-    return reached
 
 
-def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) -> None:
+def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) -> Array:
     """Check that a state keeps all that is guaranteed of an accepted one.
 
     1. Unknowns, deformation and contact forces are finite numbers.
@@ -68,6 +67,10 @@ def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) 
     Parameters
     ----------
     action : that the state was solved with
+
+    Returns
+    -------
+    reactions : (displacement unknowns,) in N of contacts and supports: the internal forces less those of the loads
 
     Raises
     ------
@@ -83,9 +86,11 @@ def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) 
         recorded = tuple(_Recorded(contact) for contact in state.contacts)
         forces = ExternalForces(recorded, tuple(action.loads), None, action.load_control)  # type: ignore[arg-type]
         balance = problem.balance(forces, action.relaxation)
-        fault = _unbalanced(balance, balance.at(state.unknowns, kinematics, 0.0))
+        now = balance.at(state.unknowns, kinematics, 0.0)
+        fault = _unbalanced(balance, now)
     if fault is not None:
         raise ConvergenceError(f"the state breaks what every accepted state is held to: {fault}")
+    return now.internal[: body.space.displacement_size]
 
 
 @dataclass(frozen=True)

@@ -152,8 +152,7 @@ class PressedModel(ABC):
         """Force (d,) in N of the whole tissue on the body that exerts a traction (d, n) in Pa on the surface points."""
         return -self.images * self.surface.total(traction) + 0.0
 
-    def base_force(self, state: ContactEquilibrium, relaxation: RelaxationStep | None = None) -> Array:
-        """Resultant (d,) in N of the internal forces of the whole tissue on the base nodes."""
-        forces = self.body.with_relaxation(relaxation).residual(state.unknowns, state.kinematics)
-        internal = forces[: self.space.displacement_size].reshape(-1, self.space.dim)
-        return self.images * internal[self.base_nodes].sum(axis=0)
+    def base_force(self, state: ContactEquilibrium) -> Array:
+        """Force (d,) in N of the base on the whole tissue in an accepted state."""
+        assert state.reactions is not None, "of accepted states only"
+        return self.images * state.reactions.reshape(-1, self.space.dim)[self.base_nodes].sum(axis=0)

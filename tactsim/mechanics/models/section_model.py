@@ -72,7 +72,7 @@ class SectionModel(PressedModel):
         displacement = model.displacement(unknowns)
         contacts = tuple(transferred(contact, model.surface, model.reference, displacement) for contact in state.contacts)
         kinematics = model.body.kinematics(unknowns)
-        return model, replace(state, unknowns=unknowns, contacts=contacts, kinematics=kinematics), split
+        return model, replace(state, unknowns=unknowns, contacts=contacts, kinematics=kinematics, reactions=None), split
 
     def highest(self, unknowns: Array, radius: float) -> tuple[float, float]:
         """Largest height of the tissue within ``radius`` of the axis, and its height on the axis, in m.
