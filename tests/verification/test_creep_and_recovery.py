@@ -36,6 +36,7 @@ def stretches(load: float) -> list[float]:
     return [1 + float(step.values["number"]) / SIDE for step in result.steps]
 
 
+@pytest.mark.slow
 def test_a_cube_recovers_from_a_stretch_of_six(one_thread, verification_record):
     stretch = stretches(9e3)
     assert max(stretch) > 6

@@ -42,6 +42,7 @@ def test_the_whole_is_pressed_as_its_quarter_is(one_thread):
     assert_kills(check, all_of_it=(quarters[1],))
 
 
+@pytest.mark.slow
 def test_a_cylinder_rolls_half_as_far_as_the_plate(one_thread, verification_record):
     """The motion is the same turned by half a turn about the middle, so that the middle follows the mean of both plates.
     Mutants: a middle that follows the plate, one that stays, and a cylinder that slips."""

@@ -13,6 +13,7 @@ another relaxation time, and no relaxation.
 from __future__ import annotations
 
 import numpy as np
+import pytest
 from mutants import assert_kills
 from scipy.interpolate import PchipInterpolator
 from scipy.optimize import brentq
@@ -67,6 +68,7 @@ def as_large_before(time, times=TIMES):
     return brentq(moved, 0.0, 1.0) if moved(0.0) > 0 else 0.0
 
 
+@pytest.mark.slow
 def test_a_sphere_is_withdrawn_from_relaxing_tissue(one_thread, verification_record):
     pressed, elastic_force = forces(None, [1.0], 40)
     # Against the depth to 3/2, in which a Hertzian force is a straight line.

@@ -79,20 +79,21 @@ def test_several_cases_are_run_again_and_again_in_the_default_folder(cases: list
 def test_a_named_folder_of_several_cases_needs_force_as_that_of_one_does(
     cases: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    assert main(["run", *cases, "--out", "mine", "--quiet"]) == 0
+    silent = ("--quiet", "--figures", "none")
+    assert main(["run", *cases, "--out", "mine", *silent]) == 0
     with monkeypatch.context() as patch:
         patch.setattr(ClosedForm, "begin", lambda self: pytest.fail("computed before the folders were checked"))
-        assert main(["run", *cases, "--out", "mine", "--quiet"]) == 5
+        assert main(["run", *cases, "--out", "mine", *silent]) == 5
         told = capsys.readouterr().err
         assert "the output folders mine/small, mine/large and mine/comparison exist; use --force" in told
         (Path("mine/large") / "notes.txt").write_text("mine")
-        assert main(["run", *cases, "--out", "mine", "--quiet"]) == 5
+        assert main(["run", *cases, "--out", "mine", *silent]) == 5
         told = capsys.readouterr().err
         assert "mine/large holds 'notes.txt'" in told
         assert "mine/small and mine/comparison exist" in told
     (Path("mine/large") / "notes.txt").unlink()
     for _ in range(3):
-        assert main(["run", *cases, "--out", "mine", "--quiet", "--force"]) == 0
+        assert main(["run", *cases, "--out", "mine", *silent, "--force"]) == 0
     assert sorted(os.listdir("mine")) == ["comparison", "large", "small"]
 
 
