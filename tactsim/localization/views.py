@@ -81,7 +81,7 @@ def _top(total: Array, shape: tuple[int, int], form: Form) -> Array:
     if form == "as_printed" or len(total) == 1:
         return joined(_pairs(total, shape, form), "stacked")
     weights = band_weights(total.shape[1], shape[1], form)
-    bands = np.maximum(total[::-1], 0.0) @ weights.T
+    bands = total[::-1] @ weights.T
     pairs = len(total) - 1
     along = np.linspace(0.0, pairs, shape[0]) if shape[0] > 1 else np.array([pairs / 2])
     first = np.minimum(along.astype(int), pairs - 1)
