@@ -36,4 +36,8 @@ def number(**fields):
     return float(result_of(**fields).quantities["number"].value)
 
 
+def numbers(**fields):
+    return {name: float(one.value) for name, one in result_of(**fields).quantities.items()}
+
+
 EXTENSION = asked("displacement", at=TOP, component="z")

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cache
+from typing import Literal
 
 import numpy as np
 from numpy.polynomial.chebyshev import chebval
@@ -15,6 +16,8 @@ from numpy.typing import ArrayLike
 from tactsim.analytic.allowed_range import checked
 from tactsim.analytic.annular_punch import solve_annular_punch
 from tactsim.errors import UnknownName
+
+Formula = Literal["exact", "thesis_4_2_21", "small_hole_series", "smythe"]
 
 LARGEST_RATIO = 0.99
 """Largest radius ratio of the functions here; above it ``solve_annular_punch`` goes on to 0.9999."""
@@ -45,9 +48,9 @@ def force_factor(radius_ratio: ArrayLike, formula: str = "exact") -> np.ndarray:
     UnknownName
         If the formula is not one of ``FORMULAS``.
     """
-    if formula not in _FORMULAS:
+    if formula not in FORMULAS:
         raise UnknownName("formula of the force factor", str(formula), FORMULAS)
-    return _FORMULAS[formula](checked("radius ratio", radius_ratio, f"[0, {LARGEST_RATIO}]"))
+    return FORMULAS[formula](checked("radius ratio", radius_ratio, f"[0, {LARGEST_RATIO}]"))
 
 
 def rise_factor(radius_ratio: ArrayLike) -> np.ndarray:
@@ -106,11 +109,10 @@ def _smythe(ratio: np.ndarray) -> np.ndarray:
     return 2 / np.pi * thin * (1 + correction)
 
 
-_FORMULAS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
+FORMULAS: dict[str, Callable[[np.ndarray], np.ndarray]] = {
     "exact": _exact,
     "thesis_4_2_21": _thesis,
     "small_hole_series": _small_hole_series,
     "smythe": _smythe,
 }
-FORMULAS = tuple(_FORMULAS)
-"""Names of the formulas of the force factor."""
+"""Formulas of the force factor."""

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
 from tactsim.errors import InputError, UnknownName
-from tactsim.outside.text import one_line
+from tactsim.outside.text import aligned, one_line
 
 if TYPE_CHECKING:
     from tactsim.results import Result
@@ -32,6 +32,8 @@ examples:
   tactsim compare results/designs --out designs
 """
 LONGEST_NAME = 24
+LEAST_HEAD, LEAST_CELL = 8, 10
+"""Least widths of the columns of a table."""
 TABLE_FILE = "comparison.csv"
 """What every comparison holds."""
 
@@ -94,23 +96,15 @@ def _print(comparison: Comparison, everything: bool) -> None:
     """Print a row for every input that differs, and for every number, or for those that differ."""
     from tactsim.results.compared_numbers import FROM_FIRST, shown_number
 
-    width = max(8, *map(len, comparison.inputs), *(len(column.head) for column in comparison.columns))
     names = [one_line(name, LONGEST_NAME) for name in comparison.names]
-    given = [[one_line(value, LONGEST_NAME) for value in values] for values in comparison.inputs.values()]
-    cells = [max(10, len(name), *(len(row[k]) for row in given)) for k, name in enumerate(names)]
-    console.out("  ".join([" " * width, *(f"{name:>{cell}}" for name, cell in zip(names, cells, strict=True))]))
-    console.out(
-        "  ".join([f"{'status':<{width}}", *(f"{s:>{cell}}" for s, cell in zip(comparison.statuses, cells, strict=True))])
-    )
+    rows = [["", *names], ["status", *comparison.statuses]]
     if comparison.warned:
-        counts = zip(comparison.counted_warnings, cells, strict=True)
-        console.out("  ".join([f"{'warnings':<{width}}", *(f"{count:>{cell}}" for count, cell in counts)]))
-    for key, row in zip(comparison.inputs, given, strict=True):
-        console.out("  ".join([f"{key:<{width}}", *(f"{value:>{cell}}" for value, cell in zip(row, cells, strict=True))]))
+        rows.append(["warnings", *comparison.counted_warnings])
+    rows += [[key, *(one_line(value, LONGEST_NAME) for value in values)] for key, values in comparison.inputs.items()]
     columns = comparison.columns if everything else comparison.differing
-    for column in columns:
-        numbers = (shown_number(value) or "-" for value in column.values)
-        console.out("  ".join([f"{column.head:<{width}}", *(f"{n:>{cell}}" for n, cell in zip(numbers, cells, strict=True))]))
+    rows += [[column.head, *(shown_number(value) or "-" for value in column.values)] for column in columns]
+    heads = max([LEAST_HEAD, *(len(column.head) for column in comparison.columns)])
+    console.out("\n".join(aligned(rows, least=[heads, *[LEAST_CELL] * len(names)])))
     if any(column.name.startswith(FROM_FIRST) for column in columns):
         console.out("\n".join(comparison.notes))
 

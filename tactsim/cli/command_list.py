@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
-from tactsim.outside.text import one_line
+from tactsim.outside.text import aligned, one_line
 
 if TYPE_CHECKING:
     from tactsim.refusals import Path as KeyPath
@@ -40,14 +40,11 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
     for section in [arguments.what] if arguments.what else SECTIONS:
-        lines = list(SECTIONS[section]())
+        table = [(name, one_line(about, 200)) for name, about in SECTIONS[section]()]
         if arguments.what is None:
-            console.out(f"{section}:")
-        width = max(len(name) for name, _ in lines)
-        for name, about in lines:
-            console.out(f"{'' if arguments.what else '  '}{name:<{width}}  {one_line(about, 200)}".rstrip())
-        if arguments.what is None:
-            console.out()
+            console.out("\n".join([f"{section}:", *aligned(table, left=2, indent="  "), ""]))
+        else:
+            console.out("\n".join(aligned(table, left=2)))
     return 0
 
 

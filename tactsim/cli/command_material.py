@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from tactsim.cli import console
+from tactsim.cli import command_list, console
 from tactsim.errors import InputError
 
 if TYPE_CHECKING:
@@ -74,17 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.material is None:
         if arguments.save is not None:
             raise InputError("--save needs a material to draw")
-        return _list()
+        return command_list.run(argparse.Namespace(what="materials"))
     return _report(arguments)
-
-
-def _list() -> int:
-    from tactsim.materials.library import LIBRARY
-
-    width = max(map(len, LIBRARY))
-    for name, entry in sorted(LIBRARY.items()):
-        console.out(f"{name:<{width}}  {entry.material.kind}; {entry.source}")
-    return 0
 
 
 def _report(arguments: argparse.Namespace) -> int:

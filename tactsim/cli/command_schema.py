@@ -54,16 +54,15 @@ def _refuse_other(path: Path) -> None:
     StorageError
         If the file is no JSON Schema.
     """
-    import json
-
     from tactsim.outside.files import opened
+    from tactsim.outside.json_text import read_json
     from tactsim.outside.text import one_line
 
     if not path.is_file() or not (text := opened(path, "description").read()):
         return
     try:
-        content = json.loads(text)
-    except (ValueError, RecursionError):
+        content = read_json(text.decode(), path.name)
+    except (StorageError, ValueError):
         content = None
     if not isinstance(content, dict) or "properties" not in content:
         raise StorageError(f"{one_line(path)} exists and is no JSON Schema; choose another FILE")

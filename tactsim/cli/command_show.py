@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from tactsim.cli import console
 from tactsim.errors import InputError, StorageError, UnknownName
-from tactsim.outside.text import one_line
+from tactsim.outside.text import aligned, one_line
 
 if TYPE_CHECKING:
     from tactsim.results import Result
@@ -150,10 +150,9 @@ def _show_sweep(path: Path, save: Path | None, form: str | None, named: Path) ->
     console.out(one_line(document.get("title") or path.stem))
     samples = f"{sweep.samples} samples" + (f", {sweep.per_specimen} of each specimen" if sweep.per_specimen > 1 else "")
     console.out(f"  a sweep of {sweep.kind}: {samples}, design {sweep.settings.design}; nothing is computed")
-    keys = [place.key.removeprefix("experiment.") for place in sweep.places]
-    width = max(map(len, keys), default=0)
-    for key, place in zip(keys, sweep.places, strict=True):
-        console.out(f"  {key:<{width}}  {_distribution_in_words(value_at(document, place.path))}")
+    drawn = [(one.key.removeprefix("experiment."), _distribution_in_words(value_at(document, one.path))) for one in sweep.places]
+    for line in aligned(drawn, left=2, indent="  "):
+        console.out(line)
     if save is not None and form is not None:
         _save_main_figure(case.at_rest(), save, form)
     console.out(f"  compute it with: tactsim sweep {one_line(named)} --out {path.stem}.zarr")

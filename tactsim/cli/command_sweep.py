@@ -135,7 +135,7 @@ def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:
 def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> int:
     from tactsim.dataset.store.arrays import FAILED
     from tactsim.dataset.use.card import empty_split_lines
-    from tactsim.dataset.use.counts import empty_splits, split_counts
+    from tactsim.dataset.use.counts import split_counts
 
     failed = int((going.store.read("status") == FAILED).sum())
     if not arguments.quiet:
@@ -144,8 +144,7 @@ def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> in
         if left := len(going.store.pending()):
             console.out(f"{left} samples are left; go on with: tactsim sweep {arguments.case} --out {arguments.out} --resume")
         else:
-            splits = going.sweep.settings.splits
-            for line in empty_split_lines(empty_splits(split_counts(going.store), splits), splits):
+            for line in empty_split_lines(split_counts(going.store), going.sweep.settings.splits):
                 console.note(line)
         console.out(f"data set {arguments.out}; check it with: tactsim data check {arguments.out}")
     if stopped:

@@ -16,7 +16,7 @@ from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, WORDS, differences, earlier_words
 from tactsim.dataset.store.blocks import JOURNAL
 from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
-from tactsim.dataset.store.opening import ARRAYS, Store, consolidated_metadata
+from tactsim.dataset.store.opening import ARRAYS, Store
 from tactsim.dataset.store.verifying import ChunkRead, computed_chunks, lost_status, waiting_in_journal
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
@@ -135,10 +135,8 @@ def _attributes(store: Store, sweep: Sweep, layout: Layout) -> Iterator[Finding]
 
 
 def _consolidated(store: Store) -> Iterator[Finding]:
-    """Arrays that the store's zarr.json, which xarray reads, describes otherwise than their own."""
-    gathered = consolidated_metadata(store.path)
-    differing = [name for name, array in store.described.items() if gathered.get(name) != array.metadata]
-    if differing:
+    """Arrays that the zarr.json of the store describes wrongly."""
+    if differing := store.ungathered:
         named = ", ".join(differing[:10])
         words = (
             f"the zarr.json of the store describes {named} otherwise than their own; go on with --resume, which gathers them anew"

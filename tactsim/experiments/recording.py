@@ -53,7 +53,7 @@ def _number(recorder: Recorder, variable: Variable, result: Result) -> Array:
             known = ", ".join(sorted(result.quantities)) or "none"
             raise CaseError(f"sweep.quantities.{variable.name}: the result has no such quantity; it has {known}")
         return np.array(np.nan)
-    value = np.asarray(quantity.value, dtype=float)
+    value = quantity.numbers
     if value.size != 1:
         raise CaseError(f"sweep.quantities.{variable.name}: the result has {value.size} values; needed: one number")
     try:

@@ -18,6 +18,7 @@ from tactsim.identification.dma_spectrum import (
     relative_noise,
     retardation_basis,
     retardation_grid,
+    units_of,
 )
 
 WEIGHTINGS = ("noise", "objective")
@@ -97,12 +98,9 @@ def fit_least_squares(data: DmaData, units: int = 8, *, weighting: str = "noise"
 
 def _merged(spectrum: Array, grid: Array, data: DmaData, units: int) -> Array:
     """Log constants of the spectrum with neighbours on the grid made one unit, and the nearest pairs until ``units`` are left."""
-    places = np.flatnonzero(spectrum[1:] > 0)
-    if places.size == 0:
+    strengths, times = units_of(spectrum, grid)
+    if not times:
         raise ConvergenceError("retardation spectrum: the data have no unit with a retardation time")
-    groups = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
-    strengths = [spectrum[1:][group].sum() for group in groups]
-    times = [float(np.average(np.log(grid[group]), weights=spectrum[1:][group])) for group in groups]
     while len(times) > units:
         k = int(np.argmin(np.diff(times)))
         times[k : k + 2] = [float(np.average(times[k : k + 2], weights=strengths[k : k + 2]))]

@@ -23,8 +23,12 @@ ROUND_OFF = 1e-13
 def retardation_grid(frequencies: Array) -> Array:
     """Retardation times in s, evenly spaced in the logarithm, for data at ``frequencies`` in Hz."""
     omega = 2 * np.pi * np.asarray(frequencies)
-    shortest, longest = SHORTEST / omega.max(), LONGEST / omega.min()
-    return np.geomspace(shortest, longest, 1 + int(np.ceil(POINTS_PER_DECADE * np.log10(longest / shortest))))
+    return grid_of_times(SHORTEST / omega.max(), LONGEST / omega.min())
+
+
+def grid_of_times(shortest: float, longest: float) -> Array:
+    """Times in s, evenly spaced in the logarithm, at least two."""
+    return np.geomspace(shortest, longest, max(2, 1 + int(np.ceil(POINTS_PER_DECADE * np.log10(longest / shortest)))))
 
 
 def retardation_basis(frequencies: Array, times: Array) -> Array:
@@ -65,6 +69,14 @@ def nonnegative_spectrum(basis: Array, compliance: Array, deviation: Array) -> A
     except RuntimeError as error:
         raise ConvergenceError(f"retardation spectrum: {error}") from None
     return scaled / size
+
+
+def units_of(spectrum: Array, grid: Array) -> tuple[list[float], list[float]]:
+    """Strengths and log times of a spectrum (1 + times,) whose first number has no time, neighbours on the grid made one unit."""
+    places = np.flatnonzero(spectrum[1:] > 0)
+    groups = [group for group in np.split(places, np.flatnonzero(np.diff(places) > 1) + 1) if group.size]
+    strengths = [spectrum[1:][group].sum() for group in groups]
+    return strengths, [float(np.average(np.log(grid[group]), weights=spectrum[1:][group])) for group in groups]
 
 
 def relative_noise(data: DmaData) -> Array:

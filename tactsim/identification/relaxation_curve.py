@@ -13,7 +13,7 @@ from tactsim.errors import ConvergenceError, InputError, InvalidQuantity, shown
 from tactsim.identification.certainty import COVERED, DRAWS, SEED, intervals, noise_of
 from tactsim.identification.columns import read_columns
 from tactsim.identification.dma_least_squares import PRIOR_DEVIATION
-from tactsim.identification.dma_spectrum import POINTS_PER_DECADE, ROUND_OFF, nonnegative_spectrum
+from tactsim.identification.dma_spectrum import ROUND_OFF, grid_of_times, nonnegative_spectrum, units_of
 from tactsim.outside.text import one_line
 from tactsim.relaxation import Relaxation
 
@@ -239,12 +239,9 @@ def _spectral_start(time: Array, response: Array, rise: float, source: str) -> A
     """Log amplitudes, equilibrium first, and log times of the spectrum, neighbours on the grid made one."""
     since = time - rise
     shortest, longest = max(since[since > 0].min(), rise / 10), since.max()
-    count = 1 + int(np.ceil(POINTS_PER_DECADE * np.log10(longest / shortest)))
-    grid = np.geomspace(shortest, longest, max(count, 2))
+    grid = grid_of_times(shortest, longest)
     spectrum = nonnegative_spectrum(_basis(time, grid, rise), response, response)
-    places = np.flatnonzero(spectrum[1:] > 0)
-    groups = np.split(places, np.flatnonzero(np.diff(places) > 1) + 1)
-    strengths = np.array([spectrum[1:][group].sum() for group in groups])
+    strengths, times = map(np.array, units_of(spectrum, grid))
     kept = strengths > NEGLIGIBLE * spectrum.sum()
     if not kept.any():
         raise InvalidQuantity(f"{source}: the response does not relax by a thousandth; leave the relaxation out")
@@ -253,10 +250,7 @@ def _spectral_start(time: Array, response: Array, rise: float, source: str) -> A
             f"{source}: the response relaxes to nothing, or the curve ends before its equilibrium shows; "
             "a relaxation of tactsim is that of a solid: measure for longer"
         )
-    times = [
-        np.average(np.log(grid[group]), weights=spectrum[1:][group]) for group, stays in zip(groups, kept, strict=True) if stays
-    ]
-    return np.concatenate([np.log(spectrum[:1]), np.log(strengths[kept]), times])
+    return np.concatenate([np.log(spectrum[:1]), np.log(strengths[kept]), times[kept]])
 
 
 def _relative_errors(logarithms: Array, time: Array, response: Array, rise: float) -> Array:

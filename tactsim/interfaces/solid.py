@@ -121,11 +121,11 @@ def check_bounds(bounds: Array, size: Array, gap: float, name: str) -> None:
     for face, axis, end in FACES:
         distance = float(size[axis] - bounds[1, axis] if end else bounds[0, axis])
         if distance < gap:
-            place = (
-                f"protrudes by {format_quantity(-distance, 'm')} through"
-                if distance < 0
-                else f"is {format_quantity(distance, 'm')} from"
-            )
-            raise InvalidQuantity(
-                f"{name} {place} the {face} face; allowed: at least {format_quantity(gap, 'm')} inside the block"
-            )
+            place, least = near_face(distance, face), format_quantity(gap, "m")
+            raise InvalidQuantity(f"{name} {place}; allowed: at least {least} inside the block")
+
+
+def near_face(distance: float, face: str) -> str:
+    """Where something is whose nearest point lies at a distance in m inside a face, in words."""
+    by = format_quantity(abs(distance), "m")
+    return f"protrudes by {by} through the {face} face" if distance < 0 else f"is {by} from the {face} face"

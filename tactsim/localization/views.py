@@ -81,14 +81,14 @@ def _top(total: Array, shape: tuple[int, int], form: Form) -> Array:
     if form == "as_printed" or len(total) == 1:
         return joined(_pairs(total, shape, form), "stacked")
     weights = band_weights(total.shape[1], shape[1], form)
-    bands = np.maximum(total[::-1], 0.0) @ weights.T
+    bands = total[::-1] @ weights.T
     pairs = len(total) - 1
     along = np.linspace(0.0, pairs, shape[0]) if shape[0] > 1 else np.array([pairs / 2])
     first = np.minimum(along.astype(int), pairs - 1)
     return corrected_profile(bands[first], bands[first + 1], (along - first)[:, None])
 
 
-def pair_images(total: Array, shape: tuple[int, int] = SHAPE, form: Form = "corrected") -> Array:
+def pair_images(total: Array, shape: tuple[int, int] = SHAPE) -> Array:
     """Pictures H1, H2, ... (pair, M, N) between neighbouring rows of sums (row, column), from the back to the front.
 
     A matrix of R rows has R - 1 pairs; one row alone is paired with itself as a picture that is the same at every height.
@@ -101,7 +101,7 @@ def pair_images(total: Array, shape: tuple[int, int] = SHAPE, form: Form = "corr
     Source: thesis, eq. 6.3.1 to 6.3.3.
     """
     check_count("rows of the picture", shape[0])
-    return _pairs(_checked_total(total), shape, form)
+    return _pairs(_checked_total(total), shape, "corrected")
 
 
 def _pairs(total: Array, shape: tuple[int, int], form: Form) -> Array:
@@ -133,14 +133,14 @@ def joined(images: Array, join: Join = "shared_once") -> Array:
     return np.concatenate([pictures[0], *pictures[1:, 1:]])
 
 
-def volume(readings: Array, shape: tuple[int, int, int], *, valid: Array | None = None) -> Array:
+def volume(readings: Array, shape: tuple[int, int, int]) -> Array:
     """Intensity (depth, y, x) in the whole tissue, in the unit of the readings: the three views' algorithm in every column.
 
     Depth 0 is the upper jaw, y 0 the front, x 0 column 1. Readings (jaw, row, column) are interpolated linearly over each jaw
     (corrected eq. .1.4 along both directions); between the jaws runs the corrected eq. .2.7. The thesis builds its image in
     space from the three views by hand (Fig. 6.8); this is the same algorithm where it has both lateral places at once.
     """
-    forces = np.maximum(checked_readings(readings, valid), 0.0)
+    forces = np.maximum(checked_readings(readings), 0.0)
     depth, back, across = shape
     check_count("layers of the volume", depth)
     along_y, along_x = band_weights(forces.shape[1], back), band_weights(forces.shape[2], across)

@@ -133,30 +133,34 @@ def write_block_mesh(block: BlockMesh, place: Path) -> None:
         raise StorageError(f"cannot write {place}: {error.strerror or error}") from None
 
 
-def _arrays(place: Path) -> dict[str, Array] | None:
-    """The arrays in a file, None if there is none, it is damaged, or the mesh is not the one it was written with."""
+def _stored(place: Path) -> tuple[QuadraticMesh, dict[str, float], str] | None:
+    """The mesh in a file, how it was made, and its content hash.
+
+    None if there is none, it is damaged, or the mesh is not the one it was written with.
+    """
     try:
         arrays = read_arrays(opened(place, "kept file").read(), place.name)
         mesh = QuadraticMesh(arrays["nodes"], arrays["elements"], arrays["regions"])
-        return arrays if str(arrays["content"]) == content_hash(mesh) else None
-    except _DAMAGE:
+        made = {"seconds": float(arrays["seconds"]), "straightened": int(arrays["straightened"])}
+        made["part"] = float(arrays["part"]) if "part" in arrays else 1.0  # files of before do not say
+        content = str(arrays["content"])
+        return (mesh, made, content) if content == content_hash(mesh) else None
+    except (*_DAMAGE, TypeError):
         return None
 
 
 def _read(place: Path, size: Array, inclusions: Sequence[Inclusion], key: str) -> tuple[BlockMesh, str] | None:
     """The mesh in a file and its content hash, None if there is none or it is damaged."""
-    arrays = _arrays(place)
-    if arrays is None:
+    stored = _stored(place)
+    if stored is None:
         return None
+    mesh, made, content = stored
     surfaces = Surfaces(size, [inclusion.solids(size) for inclusion in inclusions])
-    mesh = QuadraticMesh(arrays["nodes"], arrays["elements"], arrays["regions"])
-    made = {"seconds": float(arrays["seconds"]), "straightened": int(arrays["straightened"])}
-    made["part"] = float(arrays["part"]) if "part" in arrays else 1.0  # files of before do not say
     try:
         block = assembled(mesh, surfaces, inclusions, key=key, **made)  # type: ignore[arg-type]
     except (*_DAMAGE, IndexError, ConvergenceError, InputError):
         return None
-    return block, str(arrays["content"])
+    return block, content
 
 
 def _kept(block: BlockMesh, place: Path) -> bool:
@@ -168,7 +172,7 @@ def _kept(block: BlockMesh, place: Path) -> bool:
         try:
             os.link(waiting, place)
         except OSError:
-            if _arrays(place) is not None:
+            if _stored(place) is not None:
                 return False
             os.replace(waiting, place)
     except OSError:

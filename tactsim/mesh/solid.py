@@ -20,6 +20,11 @@ def plane_patch(axis: int, value: float) -> Patch:
     return project
 
 
+def unit_vectors(vectors: Array) -> Array:
+    """Vectors (..., 3) of length 1 in the directions of others; zero where those are zero."""
+    return vectors / np.maximum(np.linalg.norm(vectors, axis=-1, keepdims=True), 1e-300)
+
+
 def outward(vertices: Array, triangles: Array, centre: Array) -> Array:
     """Triangles (m, 3) of a surface that is star-shaped about ``centre``, turned outward."""
     a, b, c = (vertices[triangles[:, k]] - centre for k in range(3))

@@ -17,6 +17,7 @@ from tactsim.mesh.block import BlockMesh, BlockMeshSettings
 from tactsim.mesh.fitting.curving import assembled, fitted
 from tactsim.mesh.fitting.labelling import Surfaces
 from tactsim.mesh.quadratic import quadratic_mesh
+from tactsim.mesh.solid import unit_vectors
 from tactsim.mesh.tetrahedra import mesh_key
 
 CORE, ROUNDNESS = 0.5, 0.7
@@ -132,8 +133,7 @@ def grid(cells: Sequence[int]) -> Array:
 
 def directions(logical: Array) -> Array:
     """Unit vectors (n, 3) towards points of the cube [-1, 1]^3, evenly spread in angle."""
-    spread = np.tan(np.pi / 4 * logical)
-    return spread / np.maximum(np.linalg.norm(spread, axis=1, keepdims=True), 1e-300)
+    return unit_vectors(np.tan(np.pi / 4 * logical))
 
 
 def blown(logical: Array) -> Array:
@@ -171,10 +171,7 @@ def _mirrored_order(logical: Array, shell: Array, layers: int) -> Array:
 
 def ranks(keys: tuple[Array, ...]) -> Array:
     """Places (n,) of entries in the order of their keys (n,), the last key first."""
-    order = np.lexsort(keys)
-    places = np.empty(len(order), dtype=np.int64)
-    places[order] = np.arange(len(order))
-    return places
+    return np.argsort(np.lexsort(keys))
 
 
 def halved_sides(sides: Array, places: Array) -> Array:

@@ -11,7 +11,7 @@ import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from multiprocessing import Pipe
@@ -30,6 +30,8 @@ LAST_WORDS = 4096
 """Bytes at the end of what a child wrote that are kept."""
 UNSET = -1
 """Exit code of a child that was stopped."""
+BROKEN = b"!"
+"""How the answer of a worker begins that reports a defect."""
 
 
 @dataclass(frozen=True)
@@ -147,12 +149,23 @@ class Worker:
         return f"{how.ending}: {how.last_line}" if how.last_line else how.ending
 
 
-def requests(descriptor: str) -> Connection:
-    """In a worker: the other end of the connection to its parent, whose signals it leaves to the parent."""
+def serve(descriptor: str, answer: Callable[[bytes], bytes]) -> None:
+    """The life of a worker: it answers what its parent asks until the other end is gone, and leaves signals to the parent.
+
+    A defect is an answer that begins with `BROKEN`: it must reach the parent, not look like a lost worker.
+    """
     for name in ("SIGINT", "SIGHUP"):
         if hasattr(signal, name):
             signal.signal(getattr(signal, name), signal.SIG_IGN)
-    return Connection(int(descriptor))
+    connection = Connection(int(descriptor))
+    with suppress(EOFError, OSError):
+        while True:
+            request = connection.recv_bytes()
+            try:
+                answered = answer(request)
+            except Exception as error:  # noqa: BLE001  whatever it is
+                answered = BROKEN + f"{type(error).__name__}: {error}".encode()
+            connection.send_bytes(answered)
 
 
 def ending(code: int | None) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 from collections.abc import Iterable, Sequence
+from itertools import zip_longest
 
 LONGEST_LINE = 500
 """Characters of a foreign text that are shown: more than any title or reason of this program has."""
@@ -25,6 +26,17 @@ def printable(text: str) -> str:
     """Several lines as they may go to a terminal or a log: line breaks and tabs stay, all other control characters are spelled
     out."""
     return text if text.isascii() and text.isprintable() else "".join(_spelled(c, _KEPT) for c in text)
+
+
+def aligned(table: Sequence[Sequence[str]], *, left: int = 1, least: Sequence[int] = (), indent: str = "") -> list[str]:
+    """Lines of a table for a terminal: the cells of the first ``left`` columns begin in line, those of the others end in line.
+
+    A column is as wide as its widest cell, and at least as wide as ``least`` has it in characters.
+    """
+    widths = [max(map(len, column)) for column in zip(*table, strict=True)]
+    widths = [max(width) for width in zip_longest(widths, least, fillvalue=0)]
+    lines = ([*map(str.ljust, row[:left], widths), *map(str.rjust, row[left:], widths[left:])] for row in table)
+    return [indent + "  ".join(line).rstrip() for line in lines]
 
 
 def markdown_table(header: Sequence[object], rows: Iterable[Iterable[object]]) -> list[str]:

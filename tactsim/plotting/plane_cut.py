@@ -141,10 +141,7 @@ def interfaces(frame: FieldFrame) -> tuple[Array, Array]:
 def _cut_tetrahedra(simplices: Array) -> Array:
     """Triangles (T, 3, c) in which tetrahedra (n, 4, c) are cut where their first coordinate is 0: one or two of each."""
     above, ordered = _by_side(simplices)
-    crossings = []
-    for count, first, rest in ((3, 0, (1, 2, 3)), (1, 3, (0, 1, 2))):
-        chosen = ordered[above == count]
-        crossings.append(np.stack([_crossing(chosen[:, first], chosen[:, k]) for k in rest], axis=1))
+    crossings = _corners_cut_off(above, ordered)
     a, b, c, d = np.moveaxis(ordered[above == 2], 1, 0)
     corners = [_crossing(*ends) for ends in ((a, c), (a, d), (b, d), (b, c))]
     crossings += [np.stack([corners[k] for k in chosen], axis=1) for chosen in ((0, 1, 2), (0, 2, 3))]
@@ -154,11 +151,7 @@ def _cut_tetrahedra(simplices: Array) -> Array:
 def _cut_triangles(simplices: Array) -> tuple[Array, Array]:
     """Segments (S, 2, c) in which triangles (n, 3, c) are cut where their first coordinate is 0, and the triangle of each."""
     above, ordered = _by_side(simplices)
-    crossings = []
-    for count, first, rest in ((2, 0, (1, 2)), (1, 2, (0, 1))):
-        chosen = ordered[above == count]
-        crossings.append(np.stack([_crossing(chosen[:, first], chosen[:, k]) for k in rest], axis=1))
-    return np.concatenate(crossings), np.concatenate([np.flatnonzero(above == count) for count in (2, 1)])
+    return np.concatenate(_corners_cut_off(above, ordered)), np.concatenate([np.flatnonzero(above == count) for count in (2, 1)])
 
 
 def _by_side(simplices: Array) -> tuple[Array, Array]:
@@ -166,6 +159,15 @@ def _by_side(simplices: Array) -> tuple[Array, Array]:
     above = simplices[:, :, 0] >= 0
     order = np.argsort(above, axis=1, kind="stable")
     return above.sum(axis=1), np.take_along_axis(simplices, order[:, :, None], axis=1)
+
+
+def _corners_cut_off(above: Array, ordered: Array) -> list[Array]:
+    """Crossings (m, k, c) of the k edges of a corner that lies alone on its side: on the lower side, then on the upper one."""
+    last, cut = ordered.shape[1] - 1, []
+    for count, alone in ((last, 0), (1, last)):
+        chosen = ordered[above == count]
+        cut.append(np.stack([_crossing(chosen[:, alone], chosen[:, k]) for k in range(last + 1) if k != alone], axis=1))
+    return cut
 
 
 def _crossing(first: Array, second: Array) -> Array:

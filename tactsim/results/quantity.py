@@ -125,7 +125,7 @@ def format_values(quantity: Quantity) -> str:
     """A number with its unit, or the shape and range of an array."""
     if quantity.value is None:
         return "none"
-    values = np.array(quantity.value, dtype=float)
+    values = quantity.numbers
     if values.ndim == 0:
         return format_quantity(float(values), quantity.unit)
     if values.ndim == 1 and values.size <= LISTED and np.isfinite(values).all():

@@ -16,7 +16,7 @@ from tactsim.code_identity import code_identity
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
 from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.outside.files import opened
-from tactsim.outside.processes import requests
+from tactsim.outside.processes import BROKEN, serve
 from tactsim.outside.worker_pool import Answer, WorkerPool
 from tactsim.results import Result
 from tactsim.storage.files import replace_file
@@ -25,8 +25,6 @@ from tactsim.validation.solver_identity import solver_identity
 from tactsim.validation.study import RunOutcome, Study
 
 MODULE = "tactsim.validation.execution"
-BROKEN = b"!"
-"""How an answer begins that reports a defect."""
 Task = tuple[str, str, tuple[str, ...]]
 """Name of the run, path of the case file and the overrides."""
 Studies = dict[str, tuple[RunOutcome, ...]]
@@ -181,16 +179,13 @@ def _recorded(steps: Sequence, key: str) -> bool:
 
 
 def main(descriptor: str) -> None:
-    """The life of a process: cases in, outcomes out, until the other end is gone."""
-    connection = requests(descriptor)
-    with suppress(EOFError, OSError):
-        while True:
-            name, path, overrides = json.loads(connection.recv_bytes())
-            try:
-                answer = simulated((name, path, tuple(overrides))).model_dump_json().encode()
-            except Exception as error:  # noqa: BLE001  a defect must reach the parent, not look like a lost process
-                answer = BROKEN + f"{type(error).__name__}: {error}".encode()
-            connection.send_bytes(answer)
+    """The life of a process: cases in, outcomes out."""
+    serve(descriptor, _outcome)
+
+
+def _outcome(task: bytes) -> bytes:
+    name, path, overrides = json.loads(task)
+    return simulated((name, path, tuple(overrides))).model_dump_json().encode()
 
 
 if __name__ == "__main__":

@@ -12,14 +12,15 @@ from tactsim.validation.comparison import RowOutcome, TableOutcome
 from tactsim.validation.pictures import PlacedPicture, placed_pictures
 from tactsim.validation.report import (
     CLASSES,
+    COUNT_HEADER,
     MEANINGS,
+    ORIGIN_HEADER,
     RUN_HEADER,
     Validation,
     cells,
     count_origins,
     count_rows,
     run_cells,
-    short,
 )
 from tactsim.version import __version__
 
@@ -59,13 +60,12 @@ def html_report(validations: Sequence[Validation], figures: Mapping[str, Mapping
 
 
 def _group(validation: Validation, figures: Mapping[str, Mapping[str, bytes]]) -> dict[str, Any]:
-    classes = tuple(map(short, CLASSES))
     return {
         "name": validation.name,
         "faults": validation.loaded.faults,
-        "count_header": ("chapter", "table", "rows", *classes),
+        "count_header": COUNT_HEADER,
         "counts": count_rows(validation),
-        "origin_header": ("from", *classes),
+        "origin_header": ORIGIN_HEADER,
         "origins": count_origins(validation.rows),
         "errata": validation.loaded.manifest.errata,
         "tables": [_table(outcome, figures.get(outcome.name, {})) for outcome in validation.outcomes],

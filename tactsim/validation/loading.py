@@ -43,7 +43,7 @@ def load_groups(folders: Sequence[Path], names: Sequence[str] = ()) -> tuple[Loa
     CaseError, InputError, StorageError
         As `load_tables`.
     """
-    known = {folder.name: _names(folder) for folder in folders}
+    known = {folder.name: _names(read_model(folder / MANIFEST, Manifest), _files(folder)) for folder in folders}
     for name in names:
         if name not in known and not any(name in tables for tables in known.values()):
             raise UnknownName("table", name, [*known, *(table for tables in known.values() for table in tables)])
@@ -56,10 +56,14 @@ def load_groups(folders: Sequence[Path], names: Sequence[str] = ()) -> tuple[Loa
     return tuple(groups)
 
 
-def _names(folder: Path) -> list[str]:
-    """Tables that the manifest of a folder counts, and those that stand there."""
-    files = [path.stem for path in sorted(folder.glob("*.yaml")) if path.name != MANIFEST]
-    return list(dict.fromkeys([*read_model(folder / MANIFEST, Manifest).tables, *files]))
+def _files(folder: Path) -> dict[str, Path]:
+    """Files of the tables that stand in a folder, by name."""
+    return {path.stem: path for path in sorted(folder.glob("*.yaml")) if path.name != MANIFEST}
+
+
+def _names(manifest: Manifest, files: Mapping[str, Path]) -> list[str]:
+    """Tables that a manifest counts, and those that stand there."""
+    return list(dict.fromkeys([*manifest.tables, *files]))
 
 
 def load_tables(folder: Path, names: Sequence[str] = ()) -> LoadedTables:
@@ -76,9 +80,8 @@ def load_tables(folder: Path, names: Sequence[str] = ()) -> LoadedTables:
     StorageError
         If the manifest cannot be read.
     """
-    manifest = read_model(folder / MANIFEST, Manifest)
-    files = {path.stem: path for path in sorted(folder.glob("*.yaml")) if path.name != MANIFEST}
-    known = list(dict.fromkeys([*manifest.tables, *files]))
+    manifest, files = read_model(folder / MANIFEST, Manifest), _files(folder)
+    known = _names(manifest, files)
     for name in names:
         if name not in known:
             raise UnknownName("table", name, known)

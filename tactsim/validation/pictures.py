@@ -31,11 +31,6 @@ class PlacedPicture:
         return f"{self.title}. {self.says}. Here: {ended}."
 
 
-def file_name(table: str, figure: str) -> str:
-    """Name of the file that holds a figure of a table."""
-    return f"{table}_{figure}.png"
-
-
 def placed_pictures(outcome: TableOutcome) -> list[PlacedPicture]:
     """The figures of a table in its order."""
     labels = {row.row.id: row.label for row in outcome.rows}
@@ -48,7 +43,7 @@ def placed(table: str, figure: str, picture: Picture, labels: Mapping[str, str])
     by_class: dict[str, tuple[str, ...]] = {}
     for row in shown:
         by_class[labels[row]] = (*by_class.get(labels[row], ()), row)
-    return PlacedPicture(file_name(table, figure), picture.title, picture.says, shown[-1], by_class)
+    return PlacedPicture(f"{table}_{figure}.png", picture.title, picture.says, shown[-1], by_class)
 
 
 def parts(rows: Sequence[str], pictures: Sequence[PlacedPicture]) -> list[tuple[list[str], list[PlacedPicture]]]:

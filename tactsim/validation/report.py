@@ -8,18 +8,21 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any, get_args
 
-from tactsim.outside.text import markdown_table
+from tactsim.outside.text import aligned, markdown_table
 from tactsim.units import format_quantity
 from tactsim.validation.comparison import LEFT, RowOutcome, TableOutcome, figure_text
 from tactsim.validation.endings import AFTER, LABELS, Bound, Origin, Outside, Regression, Reproduced, Tolerance
 from tactsim.validation.loading import LoadedTables
-from tactsim.validation.pictures import PlacedPicture, parts, placed_pictures
+from tactsim.validation.pictures import parts, placed_pictures
 from tactsim.version import __version__
 
 HEADER = ("row", "from", "expected", "computed", "ratio", "allowed", "ended as")
 CLASSES = (*LABELS, LEFT)
 SHORT = {AFTER: "after erratum", "inside a range": "in range"}
 """Classes whose names are too long for a column."""
+_COLUMNS = tuple(SHORT.get(label, label) for label in CLASSES)
+COUNT_HEADER, ORIGIN_HEADER = ("chapter", "table", "rows", *_COLUMNS), ("from", *_COLUMNS)
+"""Heads of the tables of `count_rows` and `count_origins`."""
 ORIGINS = get_args(Origin)
 MEANINGS = {
     "reproduced": "the expected number comes out within a tolerance whose reason is given",
@@ -59,15 +62,10 @@ class Validation:
         return [*left, *(fault.partition(":")[0] for fault in self.loaded.faults)]
 
 
-def short(label: str) -> str:
-    """The class as a column names it."""
-    return SHORT.get(label, label)
-
-
 def table_text(outcome: TableOutcome) -> str:
     """Aligned text of a table: every row, why rows left, and the runs that did not converge."""
     lines = [f"{outcome.name}: {outcome.table.title} ({outcome.table.source})"]
-    lines += aligned([HEADER, *(cells(row) for row in outcome.rows)], indent="  ")
+    lines += aligned([HEADER, *(cells(row) for row in outcome.rows)], left=len(HEADER), indent="  ")
     lines += [f"    {row.row.id}: {row.reason}" for row in outcome.rows if not row.held]
     lines += [f"  did not converge: {line}" for line in _failures(outcome)]
     return "\n".join([*lines, ""])
@@ -75,16 +73,10 @@ def table_text(outcome: TableOutcome) -> str:
 
 def summary_text(validation: Validation) -> str:
     """Aligned text of a group: the classes of each table and in sum, where what is expected comes from, and the faults."""
-    head = ("chapter", "table", "rows", *map(short, CLASSES))
-    lines = aligned([head, *(tuple(map(str, row)) for row in count_rows(validation))])
-    lines += ["", *aligned([("from", *map(short, CLASSES)), *(tuple(map(str, row)) for row in count_origins(validation.rows))])]
-    return "\n".join([*lines, *(f"fault: {fault}" for fault in validation.loaded.faults)])
-
-
-def aligned(table: Sequence[Sequence[str]], indent: str = "") -> list[str]:
-    """Lines of a table with columns of even width."""
-    widths = [max(len(line[k]) for line in table) for k in range(len(table[0]))]
-    return [indent + "  ".join(cell.ljust(width) for cell, width in zip(line, widths, strict=True)).rstrip() for line in table]
+    lines: list[str] = []
+    for head, rows in ((COUNT_HEADER, count_rows(validation)), (ORIGIN_HEADER, count_origins(validation.rows))):
+        lines += [*aligned([head, *([str(cell) for cell in row] for row in rows)], left=len(head)), ""]
+    return "\n".join([*lines[:-1], *(f"fault: {fault}" for fault in validation.loaded.faults)])
 
 
 def count_rows(validation: Validation) -> list[tuple[Any, ...]]:
@@ -176,8 +168,8 @@ def markdown_report(validations: Sequence[Validation], figures: Mapping[str, Seq
     lines += [*markdown_table(("class", "meaning"), [(label, MEANINGS[label]) for label in CLASSES]), ""]
     for validation in validations:
         lines += [f"## {validation.name.capitalize()}", ""]
-        lines += markdown_table(("chapter", "table", "rows", *map(short, CLASSES)), count_rows(validation))
-        lines += ["", *markdown_table(("from", *map(short, CLASSES)), count_origins(validation.rows))]
+        lines += markdown_table(COUNT_HEADER, count_rows(validation))
+        lines += ["", *markdown_table(ORIGIN_HEADER, count_origins(validation.rows))]
         lines += [f"- **fault**: {fault}" for fault in validation.loaded.faults]
         for outcome in validation.outcomes:
             lines += _markdown_section(outcome, figures.get(outcome.name, ()))
@@ -194,14 +186,11 @@ def _markdown_section(outcome: TableOutcome, figures: Sequence[str]) -> list[str
         rows = [by_name[name] for name in names]
         shown = [(*cells(row)[:1], row.row.quantity, *cells(row)[1:], row.row.place, row.reason) for row in rows]
         lines += [*markdown_table((HEADER[0], "quantity", *HEADER[1:], "place", "reason"), shown), ""]
-        lines += [line for picture in pictures for line in _markdown_picture(picture)]
+        for picture in pictures:
+            lines += [f"![{picture.title}](figures/{picture.name})", "", f"*{picture.caption}*", ""]
     for name, runs in outcome.inputs.studies.items():
         lines += [f"#### Runs of {name}", "", *markdown_table(RUN_HEADER, run_cells(runs)), ""]
     return lines
-
-
-def _markdown_picture(picture: PlacedPicture) -> list[str]:
-    return [f"![{picture.title}](figures/{picture.name})", "", f"*{picture.caption}*", ""]
 
 
 RUN_HEADER = ("run", "status", "over the annulus", "over the disc", "displacement", "unstable volume", "end")

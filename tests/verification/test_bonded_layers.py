@@ -6,17 +6,13 @@ import numpy as np
 import pytest
 from mutants import assert_kills
 from scipy.integrate import quad
-from small_problems import CELLS, PLANES, SIDE, result_of
+from small_problems import CELLS, PLANES, SIDE, numbers
 
 INNER, BETWEEN, OUTER, WIDER = 4e-3, 5e-3, 7e-3, 4.8e-3
 """Radii of the tube before, and of its bore under pressure."""
 SOFT, STIFF = 10e3, 80e3
 """c10 in Pa of the layers."""
 STRETCH = 1.6
-
-
-def numbers(**fields):
-    return {name: float(one.value) for name, one in result_of(**fields).quantities.items()}
 
 
 def neo_hookean(c10, **more):

@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import pytest
 from mutants import assert_kills
-from small_problems import C01, C10, SIDE, result_of
+from small_problems import C01, C10, SIDE, numbers
 
 SHEAR = 0.8
 ACROSS = ("left", "right", "front", "back")
 AT = [SIDE / 4, SIDE / 2, SIDE / 3]
-
-
-def numbers(**fields):
-    return {name: float(one.value) for name, one in result_of(**fields).quantities.items()}
 
 
 def moved(slopes, x=0.0):

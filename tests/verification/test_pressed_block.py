@@ -10,7 +10,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from mutants import assert_kills
-from skfem import MeshTet, MeshTri
+from solids import box, facets_where, held, on_plane
 
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.penalty import Regularisation
@@ -24,7 +24,6 @@ from tactsim.fem.equilibrium.newton import Problem
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mechanics.contact.contact_steps import accepted
 from tactsim.mechanics.contact.posed_contact import PosedContact
-from tactsim.mesh.quadratic import quadratic_mesh
 
 MATERIAL = MooneyRivlin2(c10=1.0, c01=0.25)
 MEASURES = ("axisymmetric", "solid")
@@ -34,20 +33,15 @@ class Press:
     """A unit cylinder or cube on rollers (or glued) under a plane that comes down."""
 
     def __init__(self, measure, law, *, glued=False, cells=3, tolerance=1e-7):
-        lines = np.linspace(0, 1, cells + 1)
-        cells = MeshTri.init_tensor(lines, lines) if measure != "solid" else MeshTet.init_tensor(lines, lines, lines)
-        mesh = quadratic_mesh(cells.p.T, cells.t.T)
-        dim = mesh.dim
+        dim = 3 if measure == "solid" else 2
+        mesh = box([1.0] * dim, [cells] * dim)
         self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
         self.body = Body(self.space, [MATERIAL], mesh.regions)
-        facets, _ = mesh.boundary_facets()
-        top = facets[(mesh.nodes[facets][..., -1] == 1).all(axis=1)]
-        points = self.space.surface_points(top)
+        points = self.space.surface_points(facets_where(mesh, on_plane(dim - 1, 1.0)))
         self.surface = SurfaceAssembly(points, self.body.pattern, dim)
-        base = np.flatnonzero(mesh.nodes[:, -1] == 0)
-        held = [base * dim + axis for axis in range(dim)] if glued else [base * dim + dim - 1]
-        held += [np.flatnonzero(mesh.nodes[:, axis] == 0) * dim + axis for axis in range(dim - 1)]
-        self.base, self.problem = base * dim + dim - 1, Problem(self.body, np.concatenate(held))
+        sides = [held(mesh, axis, on_plane(axis, 0.0)) for axis in range(dim)]
+        glue = [held(mesh, axis, on_plane(dim - 1, 0.0)) for axis in range(dim)] if glued else []
+        self.base, self.problem = sides[-1], Problem(self.body, np.concatenate([*sides, *glue]))
         self.scale = Regularisation(tolerance=tolerance, softest=MATERIAL.shear_modulus, switch_length=0.1)
         place = np.zeros(dim)
         place[-1] = 1.0

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 from mutants import assert_kills
 from scipy.integrate import quad
-from skfem import MeshTet, MeshTri
-from solids import held, on_plane
+from solids import box, facets_where, held, on_plane
 
 from tactsim.analytic.histories import ramp, step
 from tactsim.analytic.interconversion import kelvin_of
@@ -37,7 +36,6 @@ from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.contact.contact_steps import accepted
 from tactsim.mechanics.contact.posed_contact import PosedContact
-from tactsim.mesh.quadratic import quadratic_mesh
 from tactsim.relaxation import Relaxation
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -59,14 +57,11 @@ class Block:
     """A unit cylinder or cube; its top moved as prescribed, or pressed by a plane."""
 
     def __init__(self, measure, material, *, law=None, cells=1, glued=False, tolerance=1e-7):
-        lines = np.linspace(0, 1, cells + 1)
-        cells = MeshTri.init_tensor(lines, lines) if measure != "solid" else MeshTet.init_tensor(lines, lines, lines)
-        mesh = quadratic_mesh(cells.p.T, cells.t.T)
-        self.dim = dim = mesh.dim
+        self.dim = dim = 3 if measure == "solid" else 2
+        mesh = box([1.0] * dim, [cells] * dim)
         self.space = TaylorHood(mesh.nodes, mesh.elements, measure)
         self.body = Body(self.space, [material], mesh.regions)
-        facets, _ = mesh.boundary_facets()
-        points = self.space.surface_points(facets[(mesh.nodes[facets][..., -1] == 1).all(axis=1)])
+        points = self.space.surface_points(facets_where(mesh, on_plane(dim - 1, 1.0)))
         self.surface = SurfaceAssembly(points, self.body.pattern, dim)
         sides = [held(mesh, axis, on_plane(axis, 0.0)) for axis in range(dim)]
         base = [held(mesh, axis, on_plane(dim - 1, 0.0)) for axis in range(dim)] if glued else []

@@ -98,9 +98,8 @@ def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
             label = f"{style.name}: no probability stated"
             if np.isfinite(stated).all():
                 alarms, detected = roc(stated, present)
-                area = float(np.sum(np.diff(alarms) * (detected[1:] + detected[:-1]) / 2))
                 axis.plot(alarms, detected, color=style.colour)
-                label = f"{style.name}: area {area:.3f}"
+                label = f"{style.name}: area {np.trapezoid(detected, alarms):.3f}"
             mark: dict[str, Any] = {"color": style.colour, "marker": style.marker, "markersize": 6, "linestyle": ""}
             axis.plot(decided[~present].mean(), decided[present].mean(), label=label, clip_on=False, zorder=3, **mark)
         axis.set(xlim=(-0.03, 1.03), ylim=(-0.03, 1.03), aspect="equal", xlabel="part of false alarms", ylabel="part detected")

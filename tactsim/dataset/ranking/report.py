@@ -9,7 +9,7 @@ from typing import Any
 from tactsim.dataset.ranking.measures import DRAWN, INTERVAL, LABELS, Ranked
 from tactsim.dataset.ranking.samples import JudgedSamples
 from tactsim.interfaces.readings import noise_in_words
-from tactsim.outside.text import markdown_table
+from tactsim.outside.text import aligned, markdown_table
 
 SCHEMA = "tactsim/ranking/1"
 SCORE = (
@@ -112,11 +112,9 @@ def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples) -> str:
     rows = [["estimator", *(heading for heading, _, _ in BRIEF)]]
     for one in ranked:
         rows.append([one.name, *(_cell(one.measures, place, unit).partition(" ")[0] for _, place, unit in BRIEF)])
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    table = ["  ".join([row[0].ljust(widths[0]), *map(str.rjust, row[1:], widths[1:])]) for row in rows]
     ratios = [f"{name}: median errors over those of {BASELINE}: {_ratios(one)}" for name, one in against_baseline(ranked).items()]
     words = [line for given in (BRIEFLY, *ratios) for line in wrap(given, SCREEN)]
-    return "\n".join([*wrap(counts + noise_in_words(samples.noise), SCREEN), "", *table, "", *words])
+    return "\n".join([*wrap(counts + noise_in_words(samples.noise), SCREEN), "", *aligned(rows), "", *words])
 
 
 def _ratios(ratios: Mapping[str, float]) -> str:

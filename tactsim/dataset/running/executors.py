@@ -7,19 +7,18 @@ import re
 import sys
 import time
 from abc import ABC, abstractmethod
-from contextlib import suppress
 from dataclasses import dataclass
 from typing import Any, Self
 
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.errors import CaseError, InputError, StorageError, TactsimError, shown
 from tactsim.outside.environment import usable_cores
-from tactsim.outside.processes import requests
+from tactsim.outside.processes import BROKEN, serve
 from tactsim.outside.worker_pool import Answer, WorkerPool
 
 MODULE = "tactsim.dataset.running.executors"
-DONE, REFUSED, BROKEN = b"=", b"?", b"!"
-"""First byte of an answer: a block as it stands in the journal, a fault of the sweep, a defect."""
+DONE, REFUSED = b"=", b"?"
+"""First byte of an answer: a block as it stands in the journal, or a fault of the sweep."""
 ADDRESS = re.compile(r"([a-z]+://)?([^\s/:]+|\[[0-9a-fA-F:]+\]):\d{1,5}")
 """What Dask prints as the address of a scheduler."""
 CONNECTING = 30.0
@@ -201,20 +200,18 @@ class Cluster(Executor):
 
 
 def main(descriptor: str) -> None:
-    """The life of a process: tasks in, blocks out, until the other end is gone."""
-    connection = requests(descriptor)
+    """The life of a process: tasks in, blocks out."""
+    serve(descriptor, _block)
+
+
+def _block(task: bytes) -> bytes:
     from tactsim.dataset.running.computing import computed
 
-    with suppress(EOFError, OSError):
-        while True:
-            task = json.loads(connection.recv_bytes())
-            try:
-                answer = DONE + computed(task["sweep"], task["samples"], folder=task["folder"])
-            except CaseError as error:
-                answer = REFUSED + str(error).encode()
-            except Exception as error:  # noqa: BLE001  a defect must reach the parent, not look like a lost process
-                answer = BROKEN + f"{type(error).__name__}: {error}".encode()
-            connection.send_bytes(answer)
+    asked = json.loads(task)
+    try:
+        return DONE + computed(asked["sweep"], asked["samples"], folder=asked["folder"])
+    except CaseError as error:
+        return REFUSED + str(error).encode()
 
 
 if __name__ == "__main__":

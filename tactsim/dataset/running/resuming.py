@@ -18,7 +18,7 @@ from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import FAILED, META, earlier_words, wrong_arrays
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.files import refuse_links, remove_torn
-from tactsim.dataset.store.opening import Store, consolidated_metadata
+from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import damaged_samples, mark_pending
 from tactsim.dataset.store.writing import consolidate, create, resize, restore, set_attributes
 from tactsim.deadline import TOO_LONG
@@ -130,7 +130,7 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
         resize(store, sweep.samples, layout.variables)
     if store.attributes["sweep"] != sweep.text:
         set_attributes(store, **attributes_of_sweep(sweep))
-    elif restored or lengths != {sweep.samples} or not _is_gathered(store):
+    elif restored or lengths != {sweep.samples} or store.ungathered:
         consolidate(store.path)
     return Store.open(store.path, writing=True)
 
@@ -144,11 +144,6 @@ def _refuse_other_arrays(store: Store, layout: Layout) -> None:
         raise StorageError(f"{next(iter(store.faults.values()))}, {remedy}")
     for name, words in wrong_arrays(store.described.values(), layout.variables):
         raise StorageError(f"{one_line(store.path / name / META)}: {words}; bring back a copy of it, {remedy}")
-
-
-def _is_gathered(store: Store) -> bool:
-    gathered = consolidated_metadata(store.path)
-    return all(gathered.get(name) == array.metadata for name, array in store.described.items())
 
 
 def _mark_too_slow(run: SweepRun) -> None:

@@ -79,7 +79,7 @@ def sweep(
         If the place is taken or cannot be written.
     """
     from tactsim.dataset.use.card import empty_split_lines
-    from tactsim.dataset.use.counts import empty_splits, split_counts
+    from tactsim.dataset.use.counts import split_counts
     from tactsim.dataset.use.loading import load
 
     asked = _sweep_of(variation, title, settings | ({} if samples is None else {"samples": samples}))
@@ -93,9 +93,8 @@ def sweep(
         troubles = card(run)
         interrupted = compute(run, executor, lambda tally: shown(tally.before + tally.done + tally.failed))
         troubles += finish(run)
-        left, splits = len(run.store.pending()), asked.settings.splits
-        if not left:
-            lines = empty_split_lines(empty_splits(split_counts(run.store), splits), splits)
+        if not (left := len(run.store.pending())):
+            lines = empty_split_lines(split_counts(run.store), asked.settings.splits)
             troubles += [line.removeprefix("warning: ") for line in lines]
     for trouble in dict.fromkeys(troubles):
         warnings.warn(trouble, stacklevel=2)

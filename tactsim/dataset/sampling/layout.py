@@ -18,7 +18,6 @@ from tactsim.errors import CaseError, suggestion
 from tactsim.experiments.recording import recorder_for
 from tactsim.experiments.recording import variables as variables_of
 from tactsim.interfaces import Recorder
-from tactsim.interfaces.distributions import Listed
 from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable
 from tactsim.units import format_quantity
@@ -107,13 +106,11 @@ def first_case(sweep: Sweep) -> Case:
 
 def varied_variables(sweep: Sweep) -> list[Variable]:
     """One variable for each place: its number in SI, or the index of the option."""
-    variables = []
-    for place in sweep.places:
-        listed = place.distribution
-        by_index = isinstance(listed, Listed) and listed.numbers is None
-        words = f"{place.key}{' (number of the option)' if by_index else ''}"
-        variables.append(Variable(place.variable, place.distribution.unit or "1", words, "varied"))
-    return variables
+    numbered = " (number of the option)"
+    return [
+        Variable(one.variable, one.distribution.unit or "1", one.key + (numbered if one.by_index else ""), "varied")
+        for one in sweep.places
+    ]
 
 
 def most_inclusions(document: Any) -> int:

@@ -10,11 +10,10 @@ from typing import Any
 
 from tactsim.code_identity import code_identity, installed_versions
 from tactsim.dataset.sampling.layout import Layout, layout_of
-from tactsim.dataset.sampling.sweep import Place, Sweep, deciding, sweep_of_text
+from tactsim.dataset.sampling.sweep import Sweep, deciding, sweep_of_text
 from tactsim.dataset.store.arrays import META, parsed_json
 from tactsim.dataset.store.opening import Store
 from tactsim.errors import InputError, StorageError
-from tactsim.interfaces.distributions import Listed
 from tactsim.outside.files import Unreadable
 from tactsim.outside.text import one_line
 from tactsim.results.provenance import PACKAGES
@@ -34,9 +33,7 @@ def attributes_of(sweep: Sweep, layout: Layout) -> dict[str, Any]:
         "kind": sweep.kind,
         "codes": [code_identity()],
         "versions": dict(_versions()),
-        "options": {
-            p.variable: [_shown(option) for option in p.distribution.options or ()] for p in sweep.places if _by_index(p)
-        },
+        "options": {p.variable: [_shown(option) for option in p.distribution.options or ()] for p in sweep.places if p.by_index},
     }
 
 
@@ -74,10 +71,6 @@ def _difference(one: Any, other: Any, place: str) -> str:
             if one.get(key) != other.get(key):
                 return _difference(one.get(key), other.get(key), f"{place}.{key}" if place else key)
     return place if one != other else ""
-
-
-def _by_index(place: Place) -> bool:
-    return isinstance(place.distribution, Listed) and place.distribution.numbers is None
 
 
 def _shown(option: Any) -> str:

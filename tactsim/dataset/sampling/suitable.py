@@ -83,8 +83,9 @@ def check_suitable(sweep: Sweep) -> None:
         else:
             for path in used:
                 beyond.setdefault(path, []).append(Beyond(drawn[path][1], frozenset(), ""))
+    of_numbers = {place.path for place in sweep.places if not place.by_index}
     for path, tries in beyond.items():
-        if _has_numbers(path, sweep) and {one.number for one in tries} == {number for _, number in entries[path]}:
+        if path in of_numbers and {one.number for one in tries} == {number for _, number in entries[path]}:
             _refuse_wholly_beyond(sweep, path, tries)
 
 
@@ -110,12 +111,6 @@ def _bounds_beyond(error: ValidationError, value: Any, path: Path) -> frozenset[
     if not all(detail["type"] in BOUNDS for detail in refused):
         return frozenset()
     return frozenset((detail["type"], float(detail["ctx"][BOUNDS[detail["type"]]])) for detail in refused)
-
-
-def _has_numbers(path: Path, sweep: Sweep) -> bool:
-    """Whether what stands at a path draws numbers, of which the ends were tried, and not options."""
-    drawn = next(place.distribution for place in sweep.places if place.path == path)
-    return not isinstance(drawn, Listed) or drawn.numbers is not None
 
 
 def _tried(place: Place) -> list[Entry]:

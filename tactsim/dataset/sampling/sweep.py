@@ -227,6 +227,11 @@ class Place:
         return ".".join(map(str, self.path))
 
     @property
+    def by_index(self) -> bool:
+        """Whether what is drawn are options that are no numbers, of which the number of the option is stored."""
+        return isinstance(self.distribution, Listed) and self.distribution.numbers is None
+
+    @property
     def variable(self) -> str:
         """Name of the stored variable."""
         return "varied_" + "_".join(map(str, self.path[1:] if self.path[:1] == ("experiment",) else self.path))

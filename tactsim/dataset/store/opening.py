@@ -144,6 +144,12 @@ class Store:
         names = self.attributes.get(ARRAYS, sorted(consolidated_metadata(self.path)))
         return [name for name in names if name not in self.described]
 
+    @property
+    def ungathered(self) -> list[str]:
+        """Names of arrays that the store's zarr.json, which xarray reads, describes otherwise than their own."""
+        gathered = consolidated_metadata(self.path)
+        return [name for name, array in self.described.items() if gathered.get(name) != array.metadata]
+
     def never_stored(self, names: Iterable[str]) -> list[str]:
         """Those of the names of arrays that the store never had, because an earlier version of tactsim began it."""
         known = {*self.described, *self.faults, *self.missing}
@@ -211,8 +217,7 @@ def read_attributes(folder: Path) -> dict[str, Any]:
             f"{one_line(folder)} has the schema {one_line(repr(schema), 80)}; this tactsim reads {STORE_SCHEMA!r}; use the "
             f"version that wrote it: {wrote}"
         )
-    missing = [name for name in KINDS if name not in attributes]
-    if missing:
+    if missing := [name for name in KINDS if name not in attributes]:
         raise StorageError(f"{one_line(folder)} is damaged: {META} does not state {', '.join(missing)}; bring back a copy")
     for name, kind in KINDS.items():
         if not isinstance(attributes[name], kind):
@@ -254,8 +259,7 @@ def _group(folder: Path) -> dict[str, Any]:
 
 
 def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDescription], dict[str, str]]:
-    """Arrays that can be read, in the order of their names, and why others cannot; what else stands in the folder is passed
-    over."""
+    """Arrays that can be read, in the order of their names, and why others cannot; what else is in the folder is passed over."""
     declared = attributes.get(ARRAYS, consolidated_metadata(folder))
     readable: dict[str, ArrayDescription] = {}
     faults: dict[str, str] = {}
@@ -269,8 +273,7 @@ def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDe
     status = readable.get("status")  # which may be found to be at fault itself
     if status is not None:
         for name in sorted(readable):
-            fault = index_fault(readable[name], status.shape[0], status.chunks[0])
-            if fault:
+            if fault := index_fault(readable[name], status.shape[0], status.chunks[0]):
                 faults[name] = f"{one_line(folder / name / META)} is damaged: {fault}; bring back a copy of it"
                 del readable[name]
     return readable, faults

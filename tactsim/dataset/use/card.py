@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -26,7 +26,7 @@ from tactsim.dataset.use.counts import (
     status_lines,
     warnings_of,
 )
-from tactsim.outside.text import markdown_table, one_line
+from tactsim.outside.text import aligned, markdown_table, one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
 TAGS = "tags: [tactile, simulation, tactsim]"
@@ -111,16 +111,16 @@ def _counts(store: Store, sweep: Sweep) -> list[str]:
     counts = split_counts(store)
     splits = [(name, str(count)) for name, count in counts.items()]
     lines = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
-    lines += [*empty_split_lines(empty_splits(counts, sweep.settings.splits), sweep.settings.splits), ""]
+    lines += [*empty_split_lines(counts, sweep.settings.splits), ""]
     failed = [(reason, str(count)) for reason, count in failures(store)]
     warned = [(words, str(count)) for words, count in warnings_of(store)]
     lines += _table("Failures", ("reason", "samples"), failed) if failed else []
     return lines + (_table("Warnings of samples that are done", ("warning", "samples"), warned) if warned else [])
 
 
-def empty_split_lines(names: Sequence[str], splits: Splits) -> list[str]:
-    """A sentence on parts of the data set without a sample, if there are any."""
-    if not names:
+def empty_split_lines(counts: Mapping[str, int], splits: Splits) -> list[str]:
+    """A sentence on parts of the data set without a sample that is done, if there are any, by the counts of those."""
+    if not (names := empty_splits(counts, splits)):
         return []
     which = f"the split {names[0]} has" if len(names) == 1 else f"the splits {', '.join(names)} have"
     shares = [share for name, share in split_shares(splits).items() if name in names]
@@ -206,9 +206,7 @@ def description(path: str | Path) -> str:
     lines += [*status_lines(store), *(f"  {name:<28} {count}" for name, count in split_counts(store).items())]
     lines += [f"  {count} x {reason}" for reason, count in failures(store)]
     lines += [f"  {count} x warning: {words}" for words, count in warnings_of(store)]
-    rows = variable_rows(store)
-    name, shape, unit = (max((len(row[k]) for row in rows), default=0) for k in range(3))
-    lines += [f"  {row[0]:<{name}}  {row[1]:<{shape}}  {row[2]:<{unit}}  {row[3]}" for row in rows]
+    lines += aligned(variable_rows(store), left=4, indent="  ")
     return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check says more" for name in store.missing)])
 
 

@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.atrial import atrial_shear_compliance
+from tactsim.analytic.force_factor import Formula
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT, ViscoelasticAnnulus
 from tactsim.experiments.annulus.scene import AnnulusDesignScene, DesignPoint, Ratio
@@ -18,8 +19,6 @@ from tactsim.model import FrozenModel, check_increasing
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.units import Force, Length, Positive, Time, format_quantity
-
-Formula = Literal["exact", "thesis_4_2_21", "small_hole_series", "smythe"]
 
 
 class AtrialTissue(FrozenModel):
@@ -253,12 +252,12 @@ def _warnings(quantities: dict[str, Quantity]) -> Iterator[str]:
     outside = np.mean(quantities["outside_small_displacement"].value)
     if outside:
         yield f"{outside:.0%} of the map has a displacement beyond {SMALL_DISPLACEMENT:g} of the outer radius"
-    touching = np.array(quantities["touch_displacement_over_radius"].value, dtype=float)
+    touching = quantities["touch_displacement_over_radius"].numbers
     beyond = np.mean(touching > SMALL_DISPLACEMENT)
     if beyond:
         yield f"{beyond:.0%} of the sensors are touched only beyond that, where linear theory is no more than a hint"
     base = "would be pressed to the base of the layer, where nothing is reported"
-    pressed = np.mean(np.isnan(np.array(quantities["displacement"].value, dtype=float)))
+    pressed = np.mean(np.isnan(quantities["displacement"].numbers))
     if pressed:
         yield f"in {pressed:.0%} of the map the annulus {base}"
     if never := np.mean(np.isnan(touching)):

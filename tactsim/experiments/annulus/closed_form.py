@@ -7,6 +7,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.analytic.force_factor import Formula
 from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT, ViscoelasticAnnulus
 from tactsim.array import Array
 from tactsim.interfaces import Experiment, Material
@@ -69,7 +70,7 @@ class ClosedForm(Experiment):
     """Thickness of the layer of tissue; null is a half-space."""
     base: Literal["bonded", "slipping"] = "bonded"
     """Base of the layer."""
-    formula: Literal["exact", "thesis_4_2_21", "small_hole_series", "smythe"] = "exact"
+    formula: Formula = "exact"
     """Force factor of the annulus on a half-space."""
     loading: AnyLoading
     """The prescribed history; it may pull."""

@@ -258,7 +258,8 @@ class ContactCondition(FaceCondition, Displacement):
     """Further displacements that are added to it, such as one that slides after the body was pressed."""
 
     @property
-    def moving(self) -> tuple[ContactCondition | Motion, ...]:
-        """Every displacement that it is given, its own first; none of a body that stands still."""
+    def moving(self) -> dict[str, ContactCondition | Motion]:
+        """Every displacement that it is given by the beginning of its key, its own first; none of a body that stands still."""
         given = any(component is not None for component in (self.x, self.y, self.z, self.r))
-        return (*((self,) if given else ()), *self.motions)
+        own: dict[str, ContactCondition | Motion] = {"": self} if given else {}
+        return own | {f"motions.{number}.": motion for number, motion in enumerate(self.motions)}

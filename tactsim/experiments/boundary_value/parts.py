@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 AT_NODE = 1e-9
 """Distance from a corner or a border of the mesh, over the body's size, that is round-off."""
+HashableWithin = tuple[tuple[str, tuple[float, float]], ...]
+"""The items of a `Within`."""
 
 
 @dataclass(frozen=True)
@@ -32,37 +34,30 @@ class Parts:
 
     @classmethod
     @lru_cache(maxsize=1)
-    def of(cls, geometry: Geometry, dimension: Dimension) -> Parts:
-        """Those of a geometry; checking, asking for doubts and solving take the same mesh, which is made once.
+    def of(cls, geometry: Geometry, dimension: Dimension, regions: tuple[HashableWithin, ...]) -> Parts:
+        """Those of a geometry, the elements of each region numbered from one on; zero elsewhere.
+
+        Checking, asking for doubts, drawing and solving take the same mesh, which is made and divided once.
 
         Raises
         ------
         ValueError
-            If it has no mesh in this dimension.
+            If it has no mesh in this dimension, there is no coordinate that a region names, or a region holds no element or does
+            not end between cells.
         InputError
             If the cells are too many.
         """
         try:
-            return cls(geometry.domain(dimension), dimension)
+            whole = cls(geometry.domain(dimension), dimension)
         except ValueError as error:
             raise ValueError(f"geometry: {error}") from None
+        return whole._divided([dict(within) for within in regions])
 
-    def divided(self, regions: Sequence[Within]) -> Parts:
-        """The same with the elements of each region, between two values of coordinates, numbered from one on; zero elsewhere.
-
-        Raises
-        ------
-        ValueError
-            If there is no such coordinate, or a region holds no element or does not end between cells.
-        """
-        mesh, slack = self.domain.mesh, AT_NODE * self.size
+    def _divided(self, regions: Sequence[Within]) -> Parts:
+        mesh = self.domain.mesh
         corners, numbers = mesh.nodes[mesh.elements[:, : mesh.dim + 1]], np.zeros(len(mesh.elements), np.int64)
         for number, within in enumerate(regions):
-            inside, touched = np.ones(len(numbers), bool), np.ones(len(numbers), bool)
-            for name, (low, high) in within.items():
-                along = self._along(name, corners)
-                inside &= ((along >= low - slack) & (along <= high + slack)).all(axis=1)
-                touched &= (along.max(axis=1) > low + slack) & (along.min(axis=1) < high - slack)
+            inside, touched = self._within(within, corners)
             if not inside.any() or (touched & ~inside).any():
                 fault = "ends within cells" if inside.any() else "holds no cell"
                 raise ValueError(
@@ -112,12 +107,7 @@ class Parts:
             If there is no such face or coordinate, or the part holds no facet or does not end between cells.
         """
         facets = self.face(condition.face)
-        inside, touched = np.ones(len(facets), bool), np.ones(len(facets), bool)
-        slack = AT_NODE * self.size
-        for name, (low, high) in (condition.within or {}).items():
-            along = self._along(name, self.domain.mesh.nodes[facets])
-            inside &= ((along >= low - slack) & (along <= high + slack)).all(axis=1)
-            touched &= (along.max(axis=1) > low + slack) & (along.min(axis=1) < high - slack)
+        inside, touched = self._within(condition.within or {}, self.domain.mesh.nodes[facets])
         if (cut := facets[touched & ~inside]).size:
             raise ValueError(self._cut_in_words(cut[0], condition))
         if not inside.any():
@@ -126,6 +116,15 @@ class Parts:
                 f"within: no facet of {condition.face} lies within {part}; let cells end there, or take a wider part"
             )
         return facets[inside]
+
+    def _within(self, within: Within, places: Array) -> tuple[Array, Array]:
+        """Which cells or facets (n,) lie in a part by the places (n, k, d) of their nodes in m, and which reach into it."""
+        inside, touched, slack = np.ones(len(places), bool), np.ones(len(places), bool), AT_NODE * self.size
+        for name, (low, high) in within.items():
+            along = self._along(name, places)
+            inside &= ((along >= low - slack) & (along <= high + slack)).all(axis=1)
+            touched &= (along.max(axis=1) > low + slack) & (along.min(axis=1) < high - slack)
+        return inside, touched
 
     def _along(self, name: str, places: Array) -> Array:
         """A coordinate in m of places (..., d); a round body in space or plane strain has the distance ``r`` from its axis, too.

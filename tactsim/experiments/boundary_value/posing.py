@@ -57,7 +57,11 @@ class PosedProblem:
     @property
     def followed(self) -> tuple[Condition | None, ...]:
         """The condition that each factor of the model belongs to, None if nothing moves it."""
-        return (*(one.condition for one in self.held), *self.loads, *(one for contact in self.contacts for one in contact.moving))
+        return (
+            *(one.condition for one in self.held),
+            *self.loads,
+            *(one for contact in self.contacts for one in contact.moving.values()),
+        )
 
 
 def posed(problem: BoundaryValueSetup) -> PosedProblem:
@@ -124,7 +128,7 @@ class _Posing:
         touch = touch_of(self._parts, condition)
         pair = ContactPair(touch.body, condition.law)
         contact = PosedContact.apart(self._surface(touch.points), touch.reference, pair, touch.place)
-        displacements = [motion.vector(self._parts.axes) for motion in condition.moving]
+        displacements = [motion.vector(self._parts.axes) for motion in condition.moving.values()]
         return MovedContact(contact, np.reshape(displacements, (-1, self._dim)))
 
     def _surface(self, points: SurfacePoints) -> SurfaceAssembly:

@@ -22,7 +22,6 @@ from tactsim.experiments.boundary_value.face_forces import FaceForces
 from tactsim.experiments.boundary_value.geometry import AXES
 from tactsim.experiments.boundary_value.posing import PosedProblem
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
-from tactsim.fem.assembly.history_variables import HistoryVariables
 from tactsim.mechanics.fields.point_values import BodyPoint, cauchy_stress, von_mises
 from tactsim.mechanics.paths.history_path import TimedState
 
@@ -52,7 +51,7 @@ class Probes:
     def values(self, state: TimedState) -> dict[str, float]:
         """Every number in SI, by its name."""
         now, body = state.contact, self._model.body
-        stress = cauchy_stress(body, now.unknowns, now.kinematics, isochoric_of(state.history_variables))
+        stress = cauchy_stress(body, now.unknowns, now.kinematics, state.isochoric)
         present = Present(state, stress, self._forces.at(state))
         return {name: self._problem.asked[name].factor * evaluate(present) for name, evaluate in self._evaluations.items()}
 
@@ -123,8 +122,3 @@ class Probes:
             lasting = 1.0 if material.relaxation is None else material.relaxation.amplitudes[0]
             energy[own] = lasting * isochoric + volumetric
         return float((body.points.weights * energy).sum())
-
-
-def isochoric_of(variables: HistoryVariables | None) -> Array | None:
-    """The relaxed isochoric stress (6, E, Q) in Pa; None if nothing relaxes."""
-    return None if variables is None else variables.stress

@@ -119,7 +119,7 @@ class BoundaryValueSetup(FrozenModel):
         ValueError
             If it has no mesh in this dimension, or a region does not end between cells; the message begins with the key.
         """
-        return Parts.of(self.geometry, self.dimension).divided([one.within for one in self.regions])
+        return Parts.of(self.geometry, self.dimension, tuple(tuple(one.within.items()) for one in self.regions))
 
     @property
     def _followed(self) -> list[Condition]:
@@ -236,9 +236,8 @@ class BoundaryValueSetup(FrozenModel):
 
     def _check_motions(self, key: str, contact: ContactCondition, axes: tuple[str, ...]) -> None:
         """Check the displacements that the rigid body of a contact is given."""
-        own = len(contact.moving) - len(contact.motions)
-        for number, motion in enumerate(contact.moving):
-            place = key if number < own else f"{key}.motions.{number - own}"
+        for name, motion in contact.moving.items():
+            place = f"{key}.{name}".removesuffix(".")
             _blaming(f"{place}: ", motion.along, axes)
             if self.dimension == "axisymmetric" and motion.r:
                 raise ValueError(f"{place}.r: a rigid body moves along the axis only in axisymmetric, not away from it")

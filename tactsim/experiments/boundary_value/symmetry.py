@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
 import numpy as np
 
@@ -16,7 +16,6 @@ from tactsim.experiments.boundary_value.conditions import (
     ContactCondition,
     FaceCondition,
     ForceCondition,
-    Motion,
     PressureCondition,
     TractionCondition,
 )
@@ -90,7 +89,7 @@ def check_contact(parts: Parts, condition: ContactCondition, body_at: Callable[[
         If they are two that meet; the message begins with the key that is to blame.
     """
     along = np.array(SIDES[parts.dimension][condition.side])
-    moved = np.reshape([motion.vector(parts.axes) for motion in condition.moving], (-1, len(along))).sum(axis=0)
+    moved = np.reshape([motion.vector(parts.axes) for motion in condition.moving.values()], (-1, len(along))).sum(axis=0)
     for name, axis in parts.domain.mirrors.items():
         if condition.face == name:
             raise ValueError(f"face: {name} is a plane of symmetry inside the body, which no rigid body touches")
@@ -99,7 +98,7 @@ def check_contact(parts: Parts, condition: ContactCondition, body_at: Callable[[
         reaches = len(on_plane) and min(body_at(on_plane.T - shift).min() for shift in (0.0, moved[:, None])) < 0
         if not (stands_on_plane or reaches):
             continue
-        for key, motion in _motions(condition):
+        for key, motion in condition.moving.items():
             if motion.along(parts.axes).get(axis):
                 raise ValueError(
                     f"{key}{parts.axes[axis]}: {name} is a plane of symmetry, and the {condition.body.kind} that moves across it "
@@ -110,13 +109,6 @@ def check_contact(parts: Parts, condition: ContactCondition, body_at: Callable[[
                 f"body: {condition.body.kind} is not its own mirror image across {name}, where the part computed ends, and meets "
                 f"it there; {ELSEWHERE}"
             )
-
-
-def _motions(condition: ContactCondition) -> Iterator[tuple[str, ContactCondition | Motion]]:
-    """Every displacement of a rigid body, with the beginning of its key."""
-    further = len(condition.moving) - len(condition.motions)
-    for number, motion in enumerate(condition.moving):
-        yield ("" if number < further else f"motions.{number - further}."), motion
 
 
 def _nodes_on_plane(parts: Parts, condition: FaceCondition, axis: int) -> Array:

@@ -10,7 +10,7 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.library import named_material
 from tactsim.mechanics.models.block_source import StructuredSource
-from tactsim.mechanics.paths.loading import DisplacementLoading
+from tactsim.mechanics.paths.loading import close
 
 if TYPE_CHECKING:
     from tactsim.experiments.grasp.record import GraspRecord
@@ -40,10 +40,9 @@ class Grasp(GraspSetup, Experiment):
     @classmethod
     def example(cls) -> Self:
         """A plain block on few elements, closed by 1 mm per jaw."""
-        closing = {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]}
         return cls(
             block=Block(tissue=named_material("icf_stable").material),
-            loading=DisplacementLoading.model_validate(closing),
+            loading=close(to=1e-3, duration=1.0),
             mesh=StructuredSource(kind="structured", cells=(4, 4, 2)),
         )
 

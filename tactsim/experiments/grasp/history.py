@@ -5,6 +5,7 @@ from __future__ import annotations
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.contact_history import QUALITY_UNITS
+from tactsim.results.result import Result
 
 MOST_COLUMNS = 8
 """Rows and columns of a matrix up to which the history has a column for every taxel."""
@@ -16,6 +17,11 @@ def taxel_columns(side: str) -> dict[tuple[int, int], str]:
     """Names in the history of the forces on a jaw's taxels, by row and column counted from 1; of the largest matrix in it."""
     numbers = range(1, MOST_COLUMNS + 1)
     return {(row, column): f"{TAXEL_FORCE}_{side}_{row}_{column}" for row in numbers for column in numbers}
+
+
+def lumen_columns(result: Result) -> list[str]:
+    """Names in the history of the pressures in lumens that a result has."""
+    return sorted({name for step in result.steps for name in step.values if name.startswith("lumen_pressure")})
 
 
 UNITS: dict[str, str] = {

@@ -149,9 +149,9 @@ class GraspRecorder(Recorder):
 
 
 def _interpolated(at: Array, times: Array, values: Array) -> Array:
-    after = np.clip(np.searchsorted(times, at), 1, len(times) - 1) if len(times) > 1 else np.zeros(len(at), int)
     if len(times) == 1:
-        return values[after]
+        return np.repeat(values, len(at), axis=0)
+    after = np.clip(np.searchsorted(times, at), 1, len(times) - 1)
     share = np.clip((at - times[after - 1]) / (times[after] - times[after - 1]), 0, 1).reshape(-1, *[1] * (values.ndim - 1))
     return (1 - share) * values[after - 1] + share * values[after]
 

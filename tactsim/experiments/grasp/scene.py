@@ -119,9 +119,10 @@ class GraspScene(Scene):
             "column": centred("column", columns, x, "x of the middle of the taxels"),
         }
 
-    def borders(self, along: str) -> Array:
-        """Lower and upper border (n, 2) in mm of every column ("x") or row ("y") of taxels in the block."""
-        return 1e3 * (self.matrix.borders(along) + self.middle["xy".index(along)])
+    def borders(self, along: str, side: str | None = None) -> Array:
+        """Lower and upper border (n, 2) in mm of every column ("x") or row ("y") of taxels on a jaw, or between both."""
+        middle = self.middle if side is None else self.place(side)
+        return 1e3 * (self.matrix.borders(along) + middle["xy".index(along)])
 
 
 class MeshReport(FrozenModel):

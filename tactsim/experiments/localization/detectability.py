@@ -19,7 +19,7 @@ from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.localization.lump_response import LumpResponse, eshelby_contrast, spacing_of_centres, tabulated_radii
 from tactsim.materials.library import named_material
-from tactsim.mechanics.paths.loading import DisplacementLoading
+from tactsim.mechanics.paths.loading import close
 from tactsim.mesh.block import part_of_usual
 from tactsim.progress import elapsed_time
 from tactsim.results.quantity import Quantity
@@ -88,9 +88,8 @@ class Detectability(Experiment):
     @classmethod
     def example(cls) -> Self:
         """A block of ICF closed by 1 mm per jaw."""
-        closing = {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]}
         block = Block(tissue=named_material("icf_stable").material)
-        return cls(grasp=GraspSetup(block=block, loading=DisplacementLoading.model_validate(closing)))
+        return cls(grasp=GraspSetup(block=block, loading=close(to=1e-3, duration=1.0)))
 
     def begin(self) -> Course:
         """One step per matrix."""

@@ -14,7 +14,6 @@ from tactsim.deadline import stopped_by
 from tactsim.errors import InputError, OutOfTime
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, reference_notes, stored_grasp
-from tactsim.interfaces.readings import Readings
 from tactsim.live.sources.recorded import SOURCES, result_recordings
 from tactsim.live.sources.scene import Frame, PageScene, Recording
 from tactsim.live.sources.watch import Watch
@@ -43,7 +42,7 @@ class PlainResult:
     @cached_property
     def closing(self) -> float | None:
         """Closing of each jaw at its end in m."""
-        return self.any_recording.frame(len(self.any_recording.times) - 1).closing
+        return self.any_recording.last.closing
 
     def response(self, watch: Watch | None = None) -> LumpResponse:
         """The fast forward model; computed once, which may take a minute or two, and kept.
@@ -138,8 +137,7 @@ class Reference:
 
     def _total_force(self, closing: float) -> float:
         """Sum in N of what all taxels read on plain tissue at a closing in m."""
-        recording = self.results[-1].any_recording
-        end = recording.frame(len(recording.times) - 1)
+        end = self.results[-1].any_recording.last
         return float(np.nansum(self.frame_for(replace(end, time=None, closing=closing)).forces))
 
     def frame_for(self, frame: Frame) -> Frame:
@@ -161,7 +159,7 @@ class Reference:
         if len(recordings) == 1:
             closings, forces, valid = recordings[0].closings, recordings[0].forces, recordings[0].valid
         else:
-            ends = [recording.frame(len(recording.times) - 1) for recording in recordings]
+            ends = [recording.last for recording in recordings]
             closings = np.array([result.closing for result in self.results], dtype=float)
             forces, valid = np.stack([end.forces for end in ends]), np.stack([end.valid for end in ends])
         assert closings is not None  # of one recording by _known_frame, of several since they were opened
@@ -176,12 +174,9 @@ class Reference:
             )
         if closings[0] > 0:
             closings, forces = np.append(0.0, closings), np.concatenate([np.zeros_like(forces[:1]), forces])
-        plain = PlainGrasp(closings, np.where(np.isfinite(forces), forces, 0.0), self._end_readings())
+        end = self.results[-1].any_recording.last.readings(self.scene)
+        plain = PlainGrasp(closings, np.where(np.isfinite(forces), forces, 0.0), end)
         return Frame(plain.at(frame.closing), np.asarray(valid.all(axis=0)), frame.time, frame.closing, frame.source)
-
-    def _end_readings(self) -> Readings:
-        end = self.results[-1].any_recording
-        return end.frame(len(end.times) - 1).readings(self.scene)
 
     def _check_reach(self, closing: float, most: float) -> None:
         if not 0 <= closing <= most * (1 + SAME_CLOSING):
@@ -197,7 +192,7 @@ def _known_frame(recording: Recording, frame: Frame) -> Frame | None:
 
     A recording whose closing does not rise from step to step is compared at its end.
     """
-    closing, last = frame.closing, recording.frame(len(recording.times) - 1)
+    closing, last = frame.closing, recording.last
     if closing is None or recording.closings is None:
         return last
     if frame.time is not None:

@@ -200,6 +200,11 @@ class Recording:
         closing = None if self.closings is None else float(self.closings[k])
         return Frame(self.forces[k], self.valid[k], float(self.times[k]), closing, self.source, self.noise)
 
+    @property
+    def last(self) -> Frame:
+        """The frame of the last step."""
+        return self.frame(len(self.times) - 1)
+
     def step_at(self, time: float) -> int:
         """Number of the last step that is not after a time in s."""
         return int(np.clip(np.searchsorted(self.times, time, side="right") - 1, 0, len(self.times) - 1))

@@ -6,6 +6,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.history_variables import mean_stress
 from tactsim.materials.stability import principal_stretches
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.fields.ellipticity import elliptic_in
@@ -23,7 +24,21 @@ def cell_fields(mesh: QuadraticMesh, body: Body, state: ContactEquilibrium) -> d
     }
 
 
-def corner_means(body: Body, values: Array) -> Array:
+def pressures(body: Body, state: ContactEquilibrium, isochoric: Array | None) -> tuple[Array, Array]:
+    """Pressure in Pa, compression positive: at the pressure unknowns, and at the nodes (n,) as the mean of the regions that meet
+    at a corner; 0 at the nodes between corners.
+
+    It is the mean stress, to which the trace of the relaxed ``isochoric`` stress (6, E, Q) in Pa counts in the deformed state.
+    """
+    u, p = body.space.split(state.unknowns)
+    at_corners, at_nodes, corners = -p, np.zeros(len(u)), body.space.pressure_corners
+    if isochoric is not None:
+        at_corners = at_corners - _corner_means(body, mean_stress(body, state.kinematics, isochoric))
+    at_nodes[: body.space.corner_count] = np.bincount(corners, at_corners) / np.bincount(corners)
+    return at_corners, at_nodes
+
+
+def _corner_means(body: Body, values: Array) -> Array:
     """Values (E, Q) at the volume points as means over the elements around each corner, region by region, by volume."""
     weights, corners = body.points.weights, body.space.pressures
     volume = np.repeat(weights.sum(axis=1), corners.shape[1])

@@ -6,9 +6,8 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
-from tactsim.fem.assembly.history_variables import mean_stress
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.fields.cell_fields import cell_fields, corner_means
+from tactsim.mechanics.fields.cell_fields import cell_fields, pressures
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.fields import DISPLACEMENT, PRESSURE
 from tactsim.results.result import FieldFrame
@@ -22,15 +21,11 @@ def section_frame(
     The pressure is the mean stress, compression positive; where it jumps from layer to layer, the mean of both. ``isochoric``
     (6, E, Q) is the relaxed isochoric stress in Pa, whose trace in the deformed state counts to the pressure.
     """
-    u, p = body.space.split(state.unknowns)
+    u, _ = body.space.split(state.unknowns)
     flat = np.zeros((len(u), 3))
     points, displacement = flat.copy(), flat.copy()
     points[:, :2], displacement[:, :2] = mesh.nodes, u
-    pressure, corners = np.zeros(len(u)), body.space.pressure_corners
-    at_corners = -p
-    if isochoric is not None:
-        at_corners = at_corners - corner_means(body, mean_stress(body, state.kinematics, isochoric))
-    pressure[: body.space.corner_count] = np.bincount(corners, at_corners) / np.bincount(corners)
+    _, pressure = pressures(body, state, isochoric)
     ends = mesh.elements[:, [[0, 1], [1, 2], [0, 2]]]
     pressure[mesh.elements[:, 3:]] = pressure[ends].mean(axis=2)
     return FieldFrame(

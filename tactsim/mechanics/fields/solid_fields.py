@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import numpy as np
-
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
-from tactsim.fem.assembly.history_variables import mean_stress
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.fields.cell_fields import cell_fields, corner_means
+from tactsim.mechanics.fields.cell_fields import cell_fields, pressures
 from tactsim.mesh.quadratic import EDGES, QuadraticMesh
 from tactsim.results.fields import CORNER_PRESSURE, DISPLACEMENT, PRESSURE
 from tactsim.results.result import FieldFrame
@@ -23,12 +20,8 @@ def solid_frame(
     the corners of each element, the nodal ``pressure`` the mean of the regions there. ``isochoric`` (6, E, Q) is the relaxed
     isochoric stress in Pa, whose trace in the deformed state counts to it.
     """
-    u, p = body.space.split(state.unknowns)
-    pressure, corners = np.zeros(len(u)), body.space.pressure_corners
-    at_corners = -p
-    if isochoric is not None:
-        at_corners = at_corners - corner_means(body, mean_stress(body, state.kinematics, isochoric))
-    pressure[: body.space.corner_count] = np.bincount(corners, at_corners) / np.bincount(corners)
+    u, _ = body.space.split(state.unknowns)
+    at_corners, pressure = pressures(body, state, isochoric)
     pressure[mesh.elements[:, 4:]] = pressure[mesh.elements[:, EDGES[3]]].mean(axis=2)
     return FieldFrame(
         time=time,

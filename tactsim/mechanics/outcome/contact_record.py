@@ -142,11 +142,7 @@ class ContactRecord(ABC, Generic[Model]):
         """Fields of the kept states, by time, each state once."""
         kept = {id(state): (model, state) for model, state in self._kept.values()}.values()
         return [
-            model.frame(
-                state.contact,
-                time=state.time,
-                isochoric=None if state.history_variables is None else state.history_variables.stress,
-            )
+            model.frame(state.contact, time=state.time, isochoric=state.isochoric)
             for model, state in sorted(kept, key=lambda pair: pair[1].time)
         ]
 

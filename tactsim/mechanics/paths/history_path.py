@@ -144,6 +144,11 @@ class TimedState:
         return np.append(self.contact.unknowns, self.contact.load)
 
     @property
+    def isochoric(self) -> Array | None:
+        """The relaxed isochoric stress (6, E, Q) in Pa; None if nothing relaxes."""
+        return None if self.history_variables is None else self.history_variables.stress
+
+    @property
     def iterations(self) -> int:
         """Newton iterations."""
         return self.contact.iterations

@@ -10,7 +10,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.solid import FACES, Patch
-from tactsim.mesh.solid import plane_patch
+from tactsim.mesh.solid import plane_patch, unit_vectors
 
 STEPS = 40
 ROUND_OFF = 1e-12
@@ -87,8 +87,7 @@ class Constraints:
         for column in np.unique(patch):
             on_it = triangles[patch == column]
             a, b, c = (points[on_it[:, k]] for k in range(3))
-            normal = np.cross(b - a, c - a)
-            normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+            normal = unit_vectors(np.cross(b - a, c - a))
             for k in range(3):
                 across = self.patches[column](points[on_it[:, k]])[1]
                 held[on_it[np.abs((normal * across).sum(axis=1)) < SHARP, k]] = True

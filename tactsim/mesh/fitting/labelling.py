@@ -11,6 +11,7 @@ from tactsim.array import Array
 from tactsim.interfaces.solid import FACES, Patch, Solid
 from tactsim.mesh.fitting.constrained import Constraints, block_patches
 from tactsim.mesh.quadratic import row_numbers
+from tactsim.mesh.solid import unit_vectors
 
 OUTSIDE = -1
 """Label outside the block; the tissue is 0, inclusion k is k, and the space in a hollow inclusion k is -1 - k."""
@@ -108,7 +109,7 @@ def _misfit(triangles: Array, patches: Sequence[Patch]) -> Array:
     """How far triangles (n, 3, 3) are from lying on each patch (p, n), in m: distance of corners plus turn of the normal."""
     normal = np.cross(triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0])
     length = np.sqrt(np.linalg.norm(normal, axis=1))
-    normal = normal / np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+    normal = unit_vectors(normal)
     misfits = []
     for patch in patches:
         near, across = patch(triangles.mean(axis=1))

@@ -165,9 +165,7 @@ def planes_across(
     touching = (gaps < NEAR * edge).all(axis=0) & pressed
     half = np.diff(bounds, axis=1) / 2
     left = np.where(touching, 0.0, gaps - np.minimum(ROOM * gaps, (REACH - 1) * half))
-    least = np.minimum(edge, np.stack([centers, length - centers], axis=1) - CORE_ROOM * half)
-    far = np.where(left > 0, np.maximum(left, least), 0.0)
-    counts = [round(np.mean([len(spaced(float(span), settings)) - 1 for span in side])) for side in left.T]
+    far, counts = beside_boxes(left, np.stack([centers, length - centers], axis=1), half, settings)
     shares = box_shares(across, 0.0)
     near, outer = (
         [
@@ -177,6 +175,17 @@ def planes_across(
         for spans in (left, far)
     )
     return (near, outer), counts[0]
+
+
+def beside_boxes(left: Array, room: Array, half: Array, settings: BlockMeshSettings) -> tuple[Array, list[int]]:
+    """Widths (n, 2) in m before and after boxes, at the faces along their planes, and the numbers of cells in them.
+
+    Beside the boxes the widths are ``left`` (n, 2). From the middles of the bodies it is ``room`` (n, 2) to the faces before and
+    after, and ``half`` (n, 1) or (n, 2) to their bounds.
+    """
+    least = np.minimum(edge_thickness(settings), room - CORE_ROOM * half)
+    far = np.where(left > 0, np.maximum(left, least), 0.0)
+    return far, [round(np.mean([len(spaced(float(span), settings)) - 1 for span in side])) for side in left.T]
 
 
 def _across(

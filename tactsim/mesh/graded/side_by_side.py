@@ -12,18 +12,17 @@ from tactsim.errors import InputError
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.lines import (
-    CORE_ROOM,
     LEAST_ALONG,
     NEAR,
     PAIRED,
     REACH,
     ROOM,
+    beside_boxes,
     box_shares,
     edge_thickness,
     knots_between,
     outer_places,
     planes_across,
-    spaced,
 )
 from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.graded.planes_along import planes_along
@@ -169,9 +168,7 @@ def _lines_beside(
     sides, touching = _box_sides(bounds, length, settings, pressed=pressed)
     left = np.stack([sides[:, 0, 0], length - sides[:, -1, 1]], axis=1)
     half = np.diff(bounds, axis=2)[..., 0][:, [0, -1]] / 2
-    least = np.minimum(edge_thickness(settings), np.stack([middle[:, 0], length - middle[:, -1]], axis=1) - CORE_ROOM * half)
-    far = np.where(left > 0, np.maximum(left, least), 0.0)
-    ends = [round(np.mean([len(spaced(float(span), settings)) - 1 for span in column])) for column in left.T]
+    far, ends = beside_boxes(left, np.stack([middle[:, 0], length - middle[:, -1]], axis=1), half, settings)
     between = [
         0 if touching[k] else max(1, round(float((sides[:, k + 1, 0] - sides[:, k, 1]).mean()) / settings.size))
         for k in range(middle.shape[1] - 1)

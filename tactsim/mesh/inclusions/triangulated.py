@@ -10,6 +10,7 @@ from tactsim.errors import InputError
 from tactsim.interfaces.solid import Solid, Triangles
 from tactsim.mesh.inclusions.crossing import crossing_pair
 from tactsim.mesh.quadratic import row_numbers
+from tactsim.mesh.solid import unit_vectors
 
 FIRST_CANDIDATES = 12
 CHUNK = 20_000
@@ -166,7 +167,7 @@ def _vertex_normals(corners: Array, normals: Array, faces: Array, count: int) ->
         b = corners[:, (k + 2) % 3] - corners[:, k]
         angle = np.arctan2(np.linalg.norm(np.cross(a, b), axis=1), (a * b).sum(axis=1))
         np.add.at(total, faces[:, k], angle[:, None] * normals)
-    return total / np.maximum(np.linalg.norm(total, axis=1, keepdims=True), 1e-300)
+    return unit_vectors(total)
 
 
 def _edge_normals(normals: Array, faces: Array) -> Array:
@@ -175,5 +176,4 @@ def _edge_normals(normals: Array, faces: Array) -> Array:
     _, number = np.unique(row_numbers(edges.reshape(-1, 2)), return_inverse=True)
     total = np.zeros((number.max() + 1, 3))
     np.add.at(total, number, np.repeat(normals, 3, axis=0))
-    mean = total[number].reshape(len(faces), 3, 3)
-    return mean / np.maximum(np.linalg.norm(mean, axis=2, keepdims=True), 1e-300)
+    return unit_vectors(total[number].reshape(len(faces), 3, 3))

@@ -11,7 +11,7 @@ from pydantic import Field
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Inclusion
-from tactsim.interfaces.solid import FACES, Measures, Point, Solid
+from tactsim.interfaces.solid import FACES, Measures, Point, Solid, near_face
 from tactsim.mesh.inclusions.centre_line import CentreLine
 from tactsim.mesh.inclusions.swept import SweptSolid
 from tactsim.units import Length, Positive, format_quantity
@@ -128,13 +128,8 @@ class Tube(Inclusion):
                     )
                 near[along][:run] = False
         if near.any():
-            least = float(distance[near].min())
-            how = (
-                f"protrudes by {format_quantity(-least, 'm')} through" if least < 0 else f"is {format_quantity(least, 'm')} from"
-            )
-            raise InvalidQuantity(
-                f"{name} {how} the {face} face; allowed: only an end may leave, the rest stays {format_quantity(gap, 'm')} inside"
-            )
+            place, inside = near_face(float(distance[near].min()), face), format_quantity(gap, "m")
+            raise InvalidQuantity(f"{name} {place}; allowed: only an end may leave, the rest stays {inside} inside")
 
 
 def check_bends(line: CentreLine, radius: float, gap: float, name: str) -> None:

@@ -13,16 +13,16 @@ from tactsim.sensors.films.composite import Composite
 Reading = Literal["corrected", "eq_2_3_1", "eq_2_1_17"]
 
 
-def creep_strain(composite: Composite, force: ArrayLike, time: ArrayLike, *, reading: Reading = "corrected") -> Array:
+def creep_strain(composite: Composite, force: ArrayLike, time: ArrayLike) -> Array:
     r"""Strain after a constant force of F newton on the reference area has acted for t seconds.
 
     .. math:: \varepsilon = \frac{F}{A E_0} + \frac{F}{A E_1} \left(1 - e^{-E_1 t / \mu_1}\right)
 
-    ``eq_2_1_17`` is the printed exponent :math:`-\mu_1 t / E_1` (errata E1). Force and time broadcast.
+    Force and time broadcast.
 
-    Source: thesis, eqs. 2.1.15 and 2.3.1.
+    Source: thesis, eqs. 2.1.15 and 2.3.1, whose printed exponent is :math:`-\mu_1 t / E_1` (errata E1).
     """
-    first, delayed = _strains(composite, force, time, reading)
+    first, delayed = _strains(composite, force, time, "corrected")
     return first + delayed
 
 

@@ -126,7 +126,7 @@ def _runs(
 
 def _counted(number: Number, result: Result, band: int) -> float:
     """A number of ``catheter_search`` at one place."""
-    share = np.array(result.quantities["tissue_share"].value)[:, band]
+    share = result.quantities["tissue_share"].numbers[:, band]
     reached = bool((share > MOSTLY).any())
     if number == "reached":
         return float(reached)
@@ -134,8 +134,7 @@ def _counted(number: Number, result: Result, band: int) -> float:
         return np.nan
     true = result.quantities["threshold_force"].numbers
     if number == "bias":
-        reported = np.array([np.nan if v is None else v for v in result.quantities["reported_force"].value])
-        return float(np.nanmean(reported / true - 1))
+        return float(np.nanmean(result.quantities["reported_force"].numbers / true - 1))
     wrong, elsewhere, undecided = (
         float(result.quantities[f"chance_of_{name}"].value) for name in ("wrong", "wrong_tissue", "no_answer")
     )

@@ -6,7 +6,6 @@ import asyncio
 import json
 import threading
 import time
-from collections.abc import Awaitable, Callable
 from pathlib import Path
 
 import numpy as np
@@ -22,8 +21,6 @@ from tactsim.live.session.estimating import frame_readings, shown_signal
 from tactsim.live.sources import feed as feeds
 from tactsim.live.sources.feed import Feed
 from tactsim.live.sources.scene import PageScene
-
-Act = Callable[[Client], Awaitable[None]]
 
 
 def answered(page: Page, name: str) -> bool:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tactsim.outside.text import one_line, printable
+from tactsim.outside.text import aligned, one_line, printable
 
 
 @pytest.mark.parametrize(
@@ -31,3 +31,10 @@ def test_long_text_is_cut_in_the_middle() -> None:
 def test_lines_and_tabs_of_a_report_stay() -> None:
     assert printable("a\n\tb") == "a\n\tb"
     assert printable("a\nb\x1b]0;x\x07\r") == "a\nb\\x1b]0;x\\x07\\r"
+
+
+def test_columns_are_as_wide_as_their_widest_cell() -> None:
+    table = [["", "soft", "hard"], ["force", "1 N", "-1.2346e-12"]]
+    assert aligned(table) == ["       soft         hard", "force   1 N  -1.2346e-12"]
+    assert aligned(table, left=3, least=[7, 6], indent="  ") == ["           soft    hard", "  force    1 N     -1.2346e-12"]
+    assert aligned([]) == []

@@ -40,13 +40,13 @@ class AnnulusDesignFigures(SingleFigure):
     def can_draw(self, result: Result) -> bool:
         """Whether the map is complete, and a sensor is touched."""
         force = result.quantities.get("force_to_touch")
-        return force is not None and bool(np.isfinite(np.array(force.value, dtype=float)).any())
+        return force is not None and bool(np.isfinite(force.numbers).any())
 
     def figure(self, result: Result) -> Figure:
         """Maps of the force to touch with the limits of force, the end of linear theory and the design point."""
         times = result.scene_as(AnnulusDesignScene).times
         shown = list(range(len(times))) if len(times) <= PANELS else [0, len(times) // 2, len(times) - 1]
-        force = np.array(result.quantities["force_to_touch"].value, dtype=float)
+        force = result.quantities["force_to_touch"].numbers
         largest = 10.0 ** np.ceil(np.log10(np.nanmax(force[:, :, shown])))
         smallest = max(largest / 10**DECADES, float(np.nanmin(force[:, :, shown])))
         norm = LogNorm(smallest, largest)
@@ -79,7 +79,7 @@ def _draw_map(axis: Axes, result: Result, force: Array, norm: LogNorm) -> Any:
     for limit, colour in zip(_limits(result), LIMIT_COLOURS, strict=True):
         if np.nanmin(force) < limit < np.nanmax(force):
             axis.contour(*_finer(ratio, recess, force), levels=[np.log(limit)], colors=[colour], linewidths=2)
-    relative = np.array(result.quantities["touch_displacement_over_radius"].value, dtype=float).T
+    relative = result.quantities["touch_displacement_over_radius"].numbers.T
     end = scene.small_displacement
     if np.nanmin(relative) < end < np.nanmax(relative):
         fine = _finer(ratio, recess, relative)
@@ -148,10 +148,10 @@ def _legend(result: Result) -> list[Any]:
     where = f"ri/ro = {point.ratio:g}, L = {format_quantity(point.recess, 'm')}"
     star = Line2D([], [], linestyle="none", marker="*", color=POINT_COLOUR, markersize=11, label=f"design point, {where}")
     end = f"above the dashed line: displacement at touch beyond {scene.small_displacement:g} ro, not small"
-    relative = np.array(result.quantities["touch_displacement_over_radius"].value, dtype=float)
+    relative = result.quantities["touch_displacement_over_radius"].numbers
     crossed = np.nanmin(relative) < scene.small_displacement < np.nanmax(relative)
     patches = [Patch(facecolor="0.6", edgecolor="white", hatch="///", label=end)] if crossed else []
-    if None in np.array(result.quantities["touch_displacement_over_radius"].value, dtype=object):
+    if np.isnan(relative).any():
         never = "white: pressed to the base of the layer before it is touched"
         patches.append(Patch(facecolor="white", edgecolor="0.6", label=never))
     return [*lines, star, *patches]

@@ -14,7 +14,6 @@ from tactsim.contact.turned import Turned
 from tactsim.experiments.boundary_value.asked import place_in_words
 from tactsim.experiments.boundary_value.conditions import AnyCondition, BodyForceCondition, PointCondition
 from tactsim.experiments.boundary_value.figures.course import draw_course
-from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene, TouchingBody
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.interfaces import Drawing
@@ -99,7 +98,7 @@ def sketch_figure(result: Result) -> Figure:
 
 def _draw_conditions(axis: Axes, problem: BoundaryValueSetup) -> None:
     """The faces and points on which something is prescribed, each with its words in the legend."""
-    parts, flat = Parts.of(problem.geometry, problem.dimension), problem.dimension != "3d"
+    parts, flat = problem.parts, problem.dimension != "3d"
     nodes = 1e3 * parts.domain.mesh.nodes
     shown = nodes if flat else _projected(nodes)
     for number, condition in enumerate(problem.conditions):

@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from tactsim.array import Array
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, has_taxels, jaws_over_time
 from tactsim.experiments.grasp.figures.parts import LETTERS
+from tactsim.experiments.grasp.history import lumen_columns
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.plotting.canvas import despined, scale_of
@@ -38,7 +39,7 @@ def has_history(result: Result) -> bool:
 def panels(result: Result) -> list[str]:
     """What there is to draw over time, from above."""
     names = ["forces"]
-    if _lumens(result):
+    if lumen_columns(result):
         names.append("lumen")
     if has_taxels(result, TAXEL_FORCE, history=True):
         names.append("taxels")
@@ -73,11 +74,6 @@ def abscissa(result: Result) -> tuple[Array, str]:
     return factor * closing, f"closing of each jaw in {unit}"
 
 
-def _lumens(result: Result) -> list[str]:
-    """History names of the pressures in lumens."""
-    return sorted({name for step in result.steps for name in step.values if name.startswith("lumen_pressure")})
-
-
 def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
     forces = {side: OUTWARD[side] * result.history_values(f"jaw_force_{side}_z") for side in JAWS}
     factor, unit = _scale(list(forces.values()), "N")
@@ -98,7 +94,7 @@ def _from_rest(along: Array, force: Array) -> tuple[Array, Array]:
 
 
 def _draw_lumen(axis: Axes, result: Result, along: Array) -> None:
-    names = _lumens(result)
+    names = lumen_columns(result)
     pressures = [result.history_values(name) for name in names]
     factor, unit = _scale(pressures, "Pa")
     scene = result.scene_as(GraspScene)

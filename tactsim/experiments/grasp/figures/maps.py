@@ -97,9 +97,9 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
 def draw_plan(axis: Axes, result: Result) -> None:
     """The block at rest from above: the elements of its upper face, the taxels of the upper jaw, and the inclusions."""
     scene, frame = result.scene_as(GraspScene), result.frames[-1]
-    layout, place, size = scene.matrix, scene.place("upper"), 1e3 * scene.matrix.size
+    size = 1e3 * scene.matrix.size
     _draw_surroundings(axis, scene, "upper", list(true_bodies(scene)))
-    columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
+    columns, rows = (scene.borders(along, "upper") for along in "xy")
     squares = [Rectangle((x, y), size, size) for x in columns[:, 0] for y in rows[:, 0]]
     axis.add_collection(
         PatchCollection(squares, facecolor=TAXEL_COLOUR, edgecolor="#30363d", linewidth=0.6, alpha=0.45, zorder=2)
@@ -121,8 +121,8 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
     """The taxels as squares with their pressure and force; the names of rows and columns beside them."""
     import matplotlib
 
-    layout, place = grasp.scene.matrix, grasp.scene.place(side)
-    columns, rows = (1e3 * (layout.borders(along) + place[k]) for k, along in enumerate("xy"))
+    layout = grasp.scene.matrix
+    columns, rows = (grasp.scene.borders(along, side) for along in "xy")
     colours, size = matplotlib.colormaps[PRESSURE_COLOURS], 1e3 * layout.size
     large, (per_newton, force_unit) = _letters(grasp.scene, side), grasp.taxel_force_scale
     border = 0.6 if grasp.pressures[side].size <= MOST_BORDERED else 0.0

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, has_taxels, jaws_over_time
+from tactsim.experiments.grasp.history import lumen_columns
 from tactsim.experiments.grasp.scene import SimulatedGrasp
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.results import Quantity, Result
@@ -18,7 +19,7 @@ def shown_moment(result: Result) -> Result:
 
     Steps are kept whole, so that histories can be drawn; the scene says in words which moment is shown.
     """
-    lumens = sorted({name for step in result.steps for name in step.values if name.startswith("lumen_pressure")})
+    lumens = lumen_columns(result)
     if not lumens or not result.frames or not has_taxels(result, TAXEL_FORCE, history=True):
         return result
     pressure = np.sum([result.history_values(name) for name in lumens], axis=0)

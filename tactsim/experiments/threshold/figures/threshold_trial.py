@@ -83,7 +83,7 @@ def threshold_error_figure(result: Result) -> Figure:
 
 def _grid(result: Result, name: str) -> Array:
     """Values [speed, noise, cut-off], NaN where there are none."""
-    return np.array(result.quantities[name].value, dtype=float)
+    return result.quantities[name].numbers
 
 
 def _total(result: Result) -> Array:
@@ -135,7 +135,7 @@ def _draw_parts(axis: Axes, result: Result, noise: int) -> None:
     """The parts of the mean error over the speed, at the middle cut-off."""
     scene = result.scene_as(ThresholdTrialScene)
     cutoff, speeds = len(scene.cutoffs) // 2, 1e3 * np.array(scene.speeds)
-    true = np.array(result.quantities["threshold_force"].value)
+    true = result.quantities["threshold_force"].numbers
     for name, (words, colour, line) in PARTS.items():
         if name == "film_error" and not np.nan_to_num(_grid(result, name)).any():
             continue

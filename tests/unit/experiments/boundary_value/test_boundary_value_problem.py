@@ -7,12 +7,14 @@ from math import pi
 import numpy as np
 import pytest
 from small_problems import (
+    BRICK,
     C01,
     C10,
     EXTENSION,
     NOMINAL,
     PLANES,
     ROD,
+    RUBBER,
     SIDE,
     SQUARE,
     STRETCH,
@@ -22,6 +24,7 @@ from small_problems import (
     result_of,
 )
 
+from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.plotting import figures_for
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -103,6 +106,15 @@ def test_a_plane_presses_from_every_side(side):
     force = number(conditions=held, contacts=[plane], asked=asked("contact_force", component=axes[side]), steps=2)
     squeezed = 2 * (0.8 - 0.8**-2) * (C10 + C01 / 0.8) * SIDE**2
     assert force == pytest.approx(away * squeezed, rel=1e-5)  # the penetration is a millionth of the block
+
+
+def test_a_body_of_several_materials_is_meshed_and_divided_once():
+    """Checking, asking for doubts, drawing and solving each ask for its parts."""
+    layers = [{"within": {"z": [0.0, SIDE / 2]}, "material": RUBBER}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "regions": layers, "conditions": PLANES}
+    problem = BoundaryValueProblem.model_validate(fields | {"asked": asked("volume")})
+    assert problem.parts is problem.parts
+    assert set(problem.parts.domain.mesh.regions) == {0, 1}
 
 
 def test_a_turned_face_stays_plane_and_its_torque_is_that_of_small_twists():

@@ -27,7 +27,6 @@ TISSUE = NeoHookean(c10=1000.0, relaxation=FADING)
 ELASTIC = NeoHookean(c10=1000.0)
 COARSE = MeshSettings(finest=0.3e-3, growth=1.5)
 JUMP = {"kind": "jump", "to": 0.1e-3, "duration": 10.0}
-SINE = {"kind": "sine", "amplitude": 0.1, "frequency": 1.0, "duration": 1.0}
 
 
 def displaced(*pieces):
