@@ -154,7 +154,8 @@ def _errors(scene: PageScene, estimate: Estimate) -> list[str]:
     size = _radius_error(scene, estimate.inclusions[0])
     digits = decimals_of_places(scene.size)
     along = f"{round(1e3 * depth, digits) + 0.0:+.{digits}f} mm in height"
-    return [f"Off by {1e3 * lateral:.{digits}f} mm in plan and {along}{size}"]
+    first = " (the first)" if len(estimate.inclusions) > 1 else ""
+    return [f"Off by {1e3 * lateral:.{digits}f} mm in plan and {along}{size}{first}"]
 
 
 def _radius_error(scene: PageScene, one: EstimatedInclusion) -> str:
