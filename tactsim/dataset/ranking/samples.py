@@ -209,7 +209,10 @@ def _check_store(data: xarray.Dataset, source: Source, name: str, split: str | S
         raise InputError(f"{name} has no labels of inclusions; needed: grasps with a lump, as of cases/sweep_lumps.yaml")
     count = data["inclusion_count"].values
     if (count > 1).any() or ((count == 1) & (data["inclusion_kind"].values[:, 0] != SPHERE)).any():
-        raise InputError(f"{name} has samples with other than one ball; needed: one ball or none in every sample of the part")
+        raise InputError(
+            f"{name} has samples{part} with other than one ball; needed: one ball or none in every sample; what estimators of "
+            "several hypotheses take such samples for is counted by tactsim data confusion"
+        )
     if not np.isfinite(data["closing"].values).all():
         raise InputError(f"{name} has grasps by a prescribed force; needed: a prescribed displacement of the jaws")
 
