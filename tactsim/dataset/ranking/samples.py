@@ -74,6 +74,8 @@ class JudgedSamples:
     """Standard deviation in N of a reading, as stated."""
     own_noise: float = 0.0
     """That of the forces as they are; the rest is added."""
+    cases: tuple[str, ...] = ()
+    """Hash of the case of each sample, as the store has it."""
 
     @property
     def block_size(self) -> Array:
@@ -153,7 +155,8 @@ def judged_samples(
         )
     given = noise if noise is not None else 0.0 if source == READ_FORCE else ROUNDING_NOISE
     stated = float(np.hypot(electronic, given))
-    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic)
+    cases = tuple(map(str, data["case_id"].values))
+    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic, cases)
 
 
 def stored_experiment(store: str | Path) -> Grasp:
