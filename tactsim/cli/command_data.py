@@ -212,7 +212,8 @@ def _train(arguments: argparse.Namespace) -> int:
     from tactsim.storage.files import replace_file
 
     if arguments.out is None or arguments.out.suffix != ".npz":
-        raise InputError("train: --out is missing; name a file ending in .npz")
+        given = "--out is missing" if arguments.out is None else f"--out {one_line(arguments.out)} is no place for weights"
+        raise InputError(f"train: {given}; name a file ending in .npz")
     _refuse_file(arguments.out)
     learned = trained(_samples(arguments, ["train"]), stored_response(arguments.reference[-1]), seed=arguments.seed)
     replace_file(arguments.out, learned.content())

@@ -156,7 +156,7 @@ def _show_sweep(path: Path, save: Path | None, form: str | None, named: Path) ->
         console.out(f"  {key:<{width}}  {_distribution_in_words(value_at(document, place.path))}")
     if save is not None and form is not None:
         _save_main_figure(case.at_rest(), save, form)
-    console.out(f"  compute it with: tactsim sweep {one_line(named)} --out {path.stem}.zarr")
+    console.out(f"  compute it with: {console.command('sweep', named, '--out', f'{path.stem}.zarr')}")
     return 0
 
 

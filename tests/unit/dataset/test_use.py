@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -378,7 +379,8 @@ def test_a_signal_stops_a_sweep_in_good_order(tmp_path: Path, number: signal.Sig
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "Traceback" not in err
-    assert "samples are left; go on with: tactsim sweep" in out
+    (going_on,) = (line.partition(": ")[2] for line in out.splitlines() if "samples are left; go on with: " in line)
+    assert shlex.split(going_on) == ["tactsim", "sweep", str(case), "--samples", "20000", "--out", str(place), "--resume"]
     assert [finding.kind for finding in check(place).findings] == ["missing"]
     computed = int((Store.open(place).read("status") == 1).sum())
     assert 0 < computed < 20000
