@@ -330,6 +330,9 @@ def test_reasons_that_differ_in_their_numbers_count_as_one_and_keep_them() -> No
     cut = TextCounts()
     cut.update([159 * "x" + "1", 160 * "x" + "2", 160 * "x" + "3"])
     assert cut.most_common() == [(160 * "x", 2), (159 * "x" + "1", 1)]
+    ranges = TextCounts()
+    ranges.update(["0.2% (ratios of 0.85 to 1.12)", "0.3% (ratios of 0.86 to 1.11)"])
+    assert ranges.most_common() == [("0.2 to 0.3% (ratios of 0.85 to 1.12)", 2)], "not 0.85 to 0.86 to 1.11 to 1.12"
 
 
 def test_the_description_and_the_card_say_the_numbers_of_failures(store: Path) -> None:
