@@ -8,7 +8,8 @@
     |   |   `-- Refused                 a part of a case made in Python
     |   |-- InvalidQuantity       a number out of its range, or without its unit
     |   |-- UnknownName           a name that is not registered
-    |   `-- AmbiguousKind         a name that is registered twice
+    |   |-- AmbiguousKind         a name that is registered twice
+    |   `-- IncompleteKind        a kind whose class lacks methods
     |-- Unfinished            3   a computation ended before its end
     |   |-- ConvergenceError      the solver gave up; carries its history
     |   |-- Collapsed             an element is nearly inside out
@@ -99,6 +100,13 @@ class UnknownName(InputError, LookupError):
 
 class AmbiguousKind(InputError):
     """Two classes are registered by one name."""
+
+
+class IncompleteKind(InputError, ValueError):
+    """The class that states a kind lacks methods that its extension point demands; the message names them."""
+
+    def __init__(self, what: str, kind: str, cls: Any):
+        super().__init__(f"{what} {shown(kind)}: its class {cls.__qualname__} lacks {', '.join(sorted(cls.__abstractmethods__))}")
 
 
 class Unfinished(TactsimError):

@@ -9,12 +9,12 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
-from typing import Annotated, Any, Union
+from typing import Any
 
-from pydantic import Field, GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
+from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
-from tactsim.errors import AmbiguousKind, UnknownName
+from tactsim.errors import AmbiguousKind, IncompleteKind, UnknownName
 
 _registered: dict[type, dict[str, Any]] = {}
 """Extension point -> ``kind`` -> class; filled by `register`, which every concrete subclass calls as it is defined."""
@@ -134,17 +134,24 @@ def kind_class(base: Any, kind: str) -> Any:
 
     Raises
     ------
-    UnknownName
-        With the nearest registered kind.
+    UnknownName, IncompleteKind
+        With the nearest registered kind; with the methods that the class of this kind lacks.
     """
     if kind not in _registered.get(base, {}):
         _load_named(base, kind)
     if kind in _registered.get(base, {}):
         return _registered[base][kind]
-    known = kinds(base)
-    if kind not in known:
-        raise UnknownName(f"{base.__name__.lower()} kind", kind, known)
-    return known[kind]
+    known, what = kinds(base), f"{base.__name__.lower()} kind"
+    if kind in known:
+        return known[kind]
+    for cls in _below(base):
+        if cls.__abstractmethods__ and cls.model_fields["kind"].default == kind:
+            raise IncompleteKind(what, kind, cls)
+    raise UnknownName(what, kind, known)
+
+
+def _below(base: Any) -> list[Any]:
+    return [one for cls in base.__subclasses__() for one in (cls, *_below(cls))]
 
 
 def _load_named(base: Any, kind: str) -> None:
@@ -243,12 +250,6 @@ def _named_schema(cls: Any) -> Any:
     """The schema of a class with a name, so that the JSON Schema describes the class once."""
     schema = cls.__pydantic_core_schema__
     return schema if "ref" in schema else {**schema, "ref": f"{cls.__module__}.{cls.__qualname__}:{id(cls)}"}
-
-
-def union_of(known: dict[str, Any]) -> Any:
-    """Pydantic type of these classes, told apart by ``kind``."""
-    choices = tuple(known[kind] for kind in sorted(known))
-    return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007
 
 
 def shipped(what: str, name: str, library: Mapping[str, Any]) -> Any:

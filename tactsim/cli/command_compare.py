@@ -22,14 +22,14 @@ Prints the numbers in which several stored results differ, a column for each res
 warnings. Of arrays, such as the forces of taxels, it gives the largest value and the largest
 difference from the first result; what differs by round-off only is the same. With --out a
 folder is written, in the place of an earlier comparison: comparison.csv and comparison.md with
-every number, comparison.png with a curve for each result and, of grasps, a map of their taxels. A
-folder that holds several results, such as that of tactsim run CASE1 CASE2 --out DIR, stands for
+every number, comparison.png (or .svg, .pdf: --figures) with a curve for each result and, of grasps,
+a map of their taxels. A folder that holds several results, such as that of tactsim run CASE1 CASE2 --out DIR, stands for
 all of them.
 """
 EXAMPLES = """\
 examples:
   tactsim compare results/soft results/hard
-  tactsim compare results/designs --out designs
+  tactsim compare results/designs --out designs --figures pdf
 """
 LONGEST_NAME = 24
 LEAST_HEAD, LEAST_CELL = 8, 10
@@ -42,6 +42,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
     parser.add_argument("results", metavar="RESULT", type=Path, nargs="+", help="folder of a result, or of several")
     parser.add_argument("--out", metavar="DIR", type=Path, help="write the table and the figure into this folder")
+    words = "form of the picture (default: png); none draws nothing"
+    parser.add_argument("--figures", choices=("none", "png", "svg", "pdf"), default="png", help=words)
     parser.add_argument("--all", action="store_true", help="print every number, those that are the same too")
 
 
@@ -64,15 +66,21 @@ def run(arguments: argparse.Namespace) -> int:
     stored = {name: read_result(folder, fields=False) for name, folder in _named(folders).items()}
     if len(stored) < 2:
         raise InputError("one result has nothing to be compared with; name two or more, or a folder that holds several")
-    report({name: one.complete for name, one in stored.items()}, arguments.out, everything=arguments.all)
+    report({name: one.complete for name, one in stored.items()}, arguments.out, form=arguments.figures, everything=arguments.all)
     return 0
 
 
 def report(
-    results: Mapping[str, Result], out: Path | None, *, everything: bool = False, warnings: bool = True, quiet: bool = False
+    results: Mapping[str, Result],
+    out: Path | None,
+    *,
+    form: str = "png",
+    everything: bool = False,
+    warnings: bool = True,
+    quiet: bool = False,
 ) -> None:
-    """Print the table unless it is to be quiet, with the warnings if they are wanted, and write it with its figure if a folder is
-    given.
+    """Print the table unless it is to be quiet, with the warnings if they are wanted, and write it with its figure in a form, or
+    "none", if a folder is given.
     """
     from tactsim.results.comparison import compared
 
@@ -82,12 +90,15 @@ def report(
         if warnings:
             _print_warnings(comparison)
     if out is not None:
-        from tactsim.cli.figures.comparison import comparison_png
         from tactsim.results.writing import write_files
 
-        picture = comparison_png(results, comparison)
         texts = {TABLE_FILE: comparison.csv_text(), "comparison.md": comparison.markdown_text()}
-        write_files({name: text.encode() for name, text in texts.items()} | {"comparison.png": picture}, out)
+        files = {name: text.encode() for name, text in texts.items()}
+        if form != "none":
+            from tactsim.cli.figures.comparison import drawn_comparison
+
+            files[f"comparison.{form}"] = drawn_comparison(results, comparison, form)
+        write_files(files, out)
         if not quiet:
             console.out(f"comparison {one_line(out)}")
 

@@ -80,9 +80,11 @@ def _rank(arguments: argparse.Namespace) -> int:
     from tactsim.dataset.figures.estimator_ranking import ranking_figures
     from tactsim.dataset.ranking.measures import ranking
     from tactsim.dataset.ranking.report import as_summary, as_text, record
+    from tactsim.dataset.ranking.training import seen_in_training
     from tactsim.experiments.localization.response_store import stored_response
     from tactsim.localization.estimators.any_estimator import offered_estimators
     from tactsim.localization.estimators.learned import LearnedEstimator
+    from tactsim.localization.networks import read_weights
 
     folder = arguments.out or Path(RANKING)
     _refuse_place(folder)
@@ -90,13 +92,14 @@ def _rank(arguments: argparse.Namespace) -> int:
     estimators = offered_estimators()
     if arguments.learned is not None:
         estimators["learned"] = LearnedEstimator.checked(arguments.learned)
+    seen = 0 if arguments.learned is None else seen_in_training(read_weights(arguments.learned), samples)
     ranked = ranking(estimators, samples, stored_response(arguments.reference[-1]), seed=arguments.seed)
-    about = {"store": arguments.store.name, "split": arguments.split, "seed": arguments.seed}
+    about = {"store": arguments.store.name, "split": arguments.split, "seed": arguments.seed, "seen_in_training": seen}
     content = record(ranked, samples, about)
     drawn = _drawn(lambda: ranking_figures(content))
-    text = as_text(ranked, samples, tuple(drawn))
+    text = as_text(ranked, samples, tuple(drawn), seen)
     _write(folder, content, text, drawn)
-    console.out(as_summary(ranked, samples))
+    console.out(as_summary(ranked, samples, seen))
     console.out(f"report in {folder}")
     return 0
 
@@ -209,7 +212,8 @@ def _train(arguments: argparse.Namespace) -> int:
     from tactsim.storage.files import replace_file
 
     if arguments.out is None or arguments.out.suffix != ".npz":
-        raise InputError("train: --out is missing; name a file ending in .npz")
+        given = "--out is missing" if arguments.out is None else f"--out {one_line(arguments.out)} is no place for weights"
+        raise InputError(f"train: {given}; name a file ending in .npz")
     _refuse_file(arguments.out)
     learned = trained(_samples(arguments, ["train"]), stored_response(arguments.reference[-1]), seed=arguments.seed)
     replace_file(arguments.out, learned.content())

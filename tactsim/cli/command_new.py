@@ -50,5 +50,5 @@ def run(arguments: argparse.Namespace) -> int:
     if place.exists() and not arguments.force:
         raise StorageError(f"{one_line(place)} exists; choose another FILE, or replace it with --force")
     replace_file(place, text.encode())
-    console.out(f"case {one_line(place)}; run it with: tactsim run {one_line(place)}")
+    console.out(f"case {one_line(place)}; run it with: {console.command('run', place)}")
     return 0

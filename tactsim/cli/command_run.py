@@ -140,7 +140,7 @@ def _compare(folders: list[Path], place: Path, arguments: argparse.Namespace) ->
     if not arguments.quiet:
         console.out()
     results = {folder.name: read_result(folder, fields=False).complete for folder in folders}
-    report(results, place, warnings=False, quiet=arguments.quiet)  # each stands in the report of its case
+    report(results, place, form=arguments.figures, warnings=False, quiet=arguments.quiet)  # each stands in the report of its case
 
 
 def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:

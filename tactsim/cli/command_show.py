@@ -155,7 +155,7 @@ def _show_sweep(path: Path, save: Path | None, form: str | None, named: Path) ->
         console.out(line)
     if save is not None and form is not None:
         _save_main_figure(case.at_rest(), save, form)
-    console.out(f"  compute it with: tactsim sweep {one_line(named)} --out {path.stem}.zarr")
+    console.out(f"  compute it with: {console.command('sweep', named, '--out', f'{path.stem}.zarr')}")
     return 0
 
 

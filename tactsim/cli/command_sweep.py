@@ -142,11 +142,18 @@ def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> in
         for line in going.tally.summary():
             console.out(line)
         if left := len(going.store.pending()):
-            console.out(f"{left} samples are left; go on with: tactsim sweep {arguments.case} --out {arguments.out} --resume")
+            console.out(f"{left} samples are left; go on with: {_resuming(arguments)}")
         else:
             for line in empty_split_lines(split_counts(going.store), going.sweep.settings.splits):
                 console.note(line)
-        console.out(f"data set {arguments.out}; check it with: tactsim data check {arguments.out}")
+        console.out(f"data set {arguments.out}; check it with: {console.command('data', 'check', arguments.out)}")
     if stopped:
         return INTERRUPTED
     return ConvergenceError.exit_code if failed else 0
+
+
+def _resuming(arguments: argparse.Namespace) -> str:
+    """The command that goes on with the data set: with the samples and keys that make it the same sweep."""
+    samples = () if arguments.samples is None else ("--samples", arguments.samples)
+    changes = [word for change in arguments.set for word in ("--set", change)]
+    return console.command("sweep", arguments.case, *samples, *changes, "--out", arguments.out, "--resume")

@@ -5,11 +5,12 @@ from __future__ import annotations
 
 import errno
 import os
+import shlex
 import sys
 from contextlib import suppress
 from typing import TextIO
 
-from tactsim.outside.text import printable
+from tactsim.outside.text import one_line, printable
 from tactsim.progress import notes_are_watched as notes_are_watched
 
 FULL = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
@@ -31,6 +32,11 @@ def note(text: str) -> None:
 def error(message: str) -> None:
     """The reason why a command ends."""
     note(f"error: {message}")
+
+
+def command(*words: object) -> str:
+    """A command of tactsim as it can be pasted into a shell, whatever its files are called."""
+    return one_line(shlex.join(["tactsim", *map(str, words)]))
 
 
 def flush() -> str:

@@ -12,6 +12,10 @@ LONGEST, LONGEST_WARNING = 160, 400
 """Characters by which reasons of failures, and warnings, are told apart, a number counted as one."""
 
 
+RANGE = " to "
+"""Between two numbers of a text that are the ends of a range."""
+
+
 @dataclass
 class _Kind:
     """Texts that differ in their numbers only: how many, and the least and the largest number of each place as written."""
@@ -26,9 +30,14 @@ class _Kind:
         self.largest = [max(pair, key=float) for pair in zip(self.largest, numbers, strict=True)]
 
     def text(self, words: tuple[str, ...]) -> str:
-        """The words with the numbers between them, such as ``0.9 to 1.4`` where they differ."""
-        ends = zip(self.least, self.largest, strict=True)
-        numbers = [low if float(low) == float(high) else f"{_rounded(low)} to {_rounded(high)}" for low, high in ends]
+        """The words with the numbers between them, such as ``0.9 to 1.4`` where they differ; of a range the widest one."""
+        numbers = []
+        for place, (low, high) in enumerate(zip(self.least, self.largest, strict=True)):
+            begins, ends = words[place + 1] == RANGE, words[place] == RANGE
+            if float(low) == float(high) or begins != ends:
+                numbers.append(high if ends else low)
+            else:
+                numbers.append(f"{_rounded(low)} to {_rounded(high)}")
         return "".join(itertools.chain(*zip(words, [*numbers, ""], strict=True)))
 
 

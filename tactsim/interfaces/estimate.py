@@ -67,6 +67,8 @@ class EstimatedInclusion:
     line: tuple[tuple[float, float, float], tuple[float, float, float]] | None = None
 
     def __post_init__(self) -> None:
+        if np.shape(self.center) != (3,):
+            raise InvalidQuantity(f"an estimated center of the shape {np.shape(self.center)}; needed: (x, y, z) in m")
         if not np.isfinite(self.center).all():
             raise InvalidQuantity(f"an estimated center {self.center} m is not finite")
         if self.radius is not None and not (np.isfinite(self.radius) and self.radius > 0):

@@ -93,8 +93,7 @@ class Runnable(CaseKind):
         return []
 
     def _repr_html_(self) -> str:
-        text: str = presenter().case_html(self)
-        return text
+        return str(presenter().case_html(self))
 
     @classmethod
     def starting_case(cls) -> Self:
@@ -133,8 +132,7 @@ class Runnable(CaseKind):
                     record = SqueezeRecord(self)
                     return Course((record.accept(closing) for closing in self.closings), record.findings)
 
-        ``accept`` computes a step and returns its `StepRecord`; ``findings`` returns the `Findings` of all steps accepted until
-        then.
+        ``accept`` computes a step and returns its `StepRecord`; ``findings`` returns the `Findings` of all accepted steps.
 
         Raises
         ------
@@ -204,16 +202,21 @@ def run_experiment(experiment: Runnable, progress: Progress | None, seconds: flo
     COMPILATION.of_another_run()
     try:
         with time_limit(seconds):
-            course = experiment.begin()
+            course = _course(experiment)
             setup = time.perf_counter() - started
             early = _ended_early(course, progress)
         findings = course.findings()
     except MemoryError as error:
         raise OutOfMemory(NO_MEMORY) from error
-    timing = dict(findings.timing)
-    if course.setup_is_timed:
-        timing["setup"] = setup
+    timing = dict(findings.timing) | ({"setup": setup} if course.setup_is_timed else {})
     return _result(experiment, findings, early, timing | {"total": time.perf_counter() - started})
+
+
+def _course(experiment: Runnable) -> Course:
+    course: Any = experiment.begin()
+    if isinstance(course, Course):
+        return course
+    raise InputError(f"begin() of {type(experiment).__name__} returned a {type(course).__name__}; needed: a Course")
 
 
 def _ended_early(course: Course, progress: Progress | None) -> tuple[Status, str] | None:
@@ -266,7 +269,7 @@ def run_within_another(experiment: Runnable) -> Generator[StepRecord, None, Resu
         If the time allowed has passed, or the memory does not suffice.
     """
     try:
-        course, early = experiment.begin(), None
+        course, early = _course(experiment), None
         try:
             yield from course.steps
         except (OutOfTime, OutOfMemory):

@@ -27,7 +27,7 @@ class Measures:
 
     Attributes
     ----------
-    center : (3,)
+    center : (3,) of its volume; of a tube the middle between its ends
     radius : of a ball or a tube, that of a ball of equal volume otherwise
     top : height of its highest point
     direction : (3,) unit vector along a long body; None if it has none
@@ -87,11 +87,14 @@ class Solid(ABC):
         """Whether points (n, 3) lie inside."""
         return self.signed_distance(points) < 0
 
+    def centroid(self) -> Array:
+        """Centre (3,) of its volume in m; here the middle of its bounds, where that of a body with a centre of symmetry lies."""
+        return np.asarray(self.bounds().mean(axis=0))
+
     def measures(self) -> Measures:
         """Where it lies and how large it is."""
-        bounds = self.bounds()
         radius = float((0.75 * self.volume() / np.pi) ** (1 / 3))
-        return Measures(bounds.mean(axis=0), radius, float(bounds[1, 2]))
+        return Measures(self.centroid(), radius, float(self.bounds()[1, 2]))
 
     def ball_image(self) -> BallImage | None:
         """The stretched ball that it is, which meshes of layers and graded cells can follow; None if it is none."""

@@ -66,6 +66,8 @@ class LearnedWeights:
     """Grasps with a lump from which the covariance was estimated."""
     held_out_error: tuple[float, float] | None = None
     """Medians in m of their errors in plan and in height, of weights that were just trained; a file does not keep it."""
+    trained_on: tuple[str, ...] = ()
+    """Hash of the case of every sample of a store that was learned from or held out; empty of files of earlier versions."""
 
     def probability(self, features: Array) -> float:
         """That there is a lump, for features (inputs,)."""
@@ -113,6 +115,7 @@ class LearnedWeights:
             "schema": np.array(SCHEMA),
             "layout": np.array(self.layout.model_dump_json()),
             "held_out": np.array(self.held_out),
+            "trained_on": np.array(self.trained_on, dtype=str),
             **{name: np.asarray(getattr(self, name), dtype=float) for name in NUMBERS},
         }
         for number, network in enumerate((self.presence, *self.places)):
@@ -150,8 +153,15 @@ def read_weights(path: str | Path) -> LearnedWeights:
         layout = TaxelLayout.model_validate_json(str(file["layout"]), strict=True)
         numbers = {name: np.asarray(file[name], dtype=float) for name in NUMBERS}
         held_out = int(file["held_out"])
+        trained_on = tuple(map(str, file["trained_on"])) if "trained_on" in file else ()
         weights = LearnedWeights(
-            layout=layout, places=tuple(places), presence=presence, held_out=held_out, held_out_error=None, **numbers
+            layout=layout,
+            places=tuple(places),
+            presence=presence,
+            held_out=held_out,
+            held_out_error=None,
+            trained_on=trained_on,
+            **numbers,
         )
     except (ValueError, LookupError, TypeError, OverflowError, ValidationError) as error:
         reason = f"does not hold the weights of a learned estimator: {one_line(error, 120)}"

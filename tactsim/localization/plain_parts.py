@@ -10,7 +10,7 @@ import scipy
 from tactsim.array import Array
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
-from tactsim.localization.reference_errors import SAME_TISSUE, TAXEL_ERROR, ReferenceErrors
+from tactsim.localization.reference_errors import SAME_TISSUE, TAXEL_ERROR, WORTH_SAYING, ReferenceErrors
 from tactsim.sensors.response_errors import root_mean_square
 
 REACH = 1.25
@@ -87,9 +87,11 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
 
 
 def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
-    """What the user must know if the plain parts do not fit the reference; None if they do."""
+    """What the user must know if the plain parts do not fit the reference, or cannot tell whose a factor is; None if neither."""
     parts = plain_parts(readings, estimate)
-    if parts is None or parts.fits:
+    if parts is None:
+        return _factor_without_plain_parts(estimate)
+    if parts.fits:
         return None
     words = (
         f"the readings of the {parts.taxels} taxels away from the estimate do not fit the reference (chi-square of their common "
@@ -104,6 +106,16 @@ def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
     if estimate.factor is None:
         return f"{words}; the estimate takes that for an inclusion; give a reference of this tissue"
     return f"{words}; the estimate allows for one common factor"
+
+
+def _factor_without_plain_parts(estimate: Estimate) -> str | None:
+    """That inclusions under nearly all taxels raise their readings as stiffer tissue does, if a factor is worth it; or None."""
+    if not estimate.inclusions or estimate.factor is None or abs(estimate.factor - 1) < WORTH_SAYING:
+        return None
+    return (
+        f"fewer than {LEAST} taxels lie away from the estimate: whether its factor of {estimate.factor:.3g} is of tissue and "
+        "sensors, or is what the inclusions do to all readings, cannot be told; do not trust their stiffness and size"
+    )
 
 
 def _beside(readings: Readings, estimate: Estimate) -> Array:

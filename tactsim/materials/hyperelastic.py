@@ -10,6 +10,7 @@ from pydantic import model_validator
 
 from tactsim.array import Array
 from tactsim.interfaces import Material
+from tactsim.materials.derivatives import check_derivatives
 from tactsim.materials.kinematics import (
     cofactor,
     determinant,
@@ -53,6 +54,7 @@ class Hyperelastic(Material):
 
     @model_validator(mode="after")
     def _moduli_are_usable(self) -> Self:
+        check_derivatives(self)
         check_moduli(self.shear_modulus, self.bulk_modulus)
         return self
 

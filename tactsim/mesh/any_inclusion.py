@@ -48,12 +48,21 @@ def check_inclusions(size: Array, inclusions: Sequence[Inclusion], gap: float) -
     solids = []
     for number, inclusion in enumerate(inclusions, 1):
         name = inclusion_name(number, inclusion)
+        _check_solids(inclusion, size)
         body = inclusion.solids(size)[0]
         _check_extent(body, size, name)
         inclusion.check_in_block(size, gap, name)
         solids.append(_Embedded(name, body, size, hollow=len(inclusion.solids(size)) > 1))
     for first, second in itertools.combinations(solids, 2):
         _check_apart(first, second, gap)
+
+
+def _check_solids(inclusion: Inclusion, size: Array) -> None:
+    """Refuse a kind whose solids are no tuple of one, or of an outer and an inner one."""
+    solids: object = inclusion.solids(size)
+    if not isinstance(solids, tuple) or len(solids) not in (1, 2) or not all(isinstance(one, Solid) for one in solids):
+        needed = "a tuple of a Solid, or of the outer and the inner one of a hollow body"
+        raise InvalidQuantity(f"solids() of {type(inclusion).__name__} returned {solids!r:.60}; needed: {needed}")
 
 
 @dataclass(frozen=True)

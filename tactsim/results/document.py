@@ -9,7 +9,7 @@ from typing import Annotated, Any, Literal
 import numpy as np
 from pydantic import AfterValidator, BaseModel, ConfigDict, Field, Strict, ValidationError
 
-from tactsim.errors import StorageError, shown
+from tactsim.errors import InvalidQuantity, StorageError, shown
 from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
 from tactsim.refusals import first_fault
@@ -105,6 +105,8 @@ def document_text(result: Result, case_id: str) -> str:
     ------
     StorageError
         If the scene of the result was read from a folder and cannot be read.
+    InvalidQuantity
+        If a quantity or the history could not be read again, such as a value that is no array of numbers.
     """
     if isinstance(result.scene, UnreadableScene):
         raise StorageError(f"a result whose scene cannot be read is not written: {result.scene.reason}")
@@ -128,6 +130,10 @@ def document_text(result: Result, case_id: str) -> str:
     ending = {"status": str(result.status), "reason": result.reason}
     whole = {**head, **ending, "assumptions": list(result.assumptions), "warnings": warnings, **plain}
     order = ResultDocument.model_fields
+    try:
+        ResultDocument.model_validate(whole)
+    except ValidationError as error:
+        raise InvalidQuantity(f"the result is not written, for it could not be read again: {first_fault(error)}") from None
     return json.dumps({name: whole[name] for name in order}, indent=1, allow_nan=False) + "\n"
 
 

@@ -10,11 +10,12 @@ from typing import TYPE_CHECKING, Any, TypeVar, overload
 
 import numpy as np
 
-from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, StorageError, UnknownName, shown
+from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, InvalidQuantity, StorageError, UnknownName, shown
 from tactsim.presenter import presenter
 from tactsim.results.axes import coordinates, dimensions
 from tactsim.results.quantity import Quantity
 from tactsim.results.scene import Scene, UnreadableScene
+from tactsim.units import is_unit
 
 if TYPE_CHECKING:
     import pyvista
@@ -48,10 +49,22 @@ class StepRecord:
 
 
 def rows(units: Iterable[str], columns: Iterable[Iterable[float]]) -> tuple[StepRecord, ...]:
-    """The history of what is computed without load steps: a record for each row of ``columns``, named as ``units`` are."""
+    """The history of what is computed without load steps: a record for each row of ``columns``, named as ``units`` are.
+
+    Raises
+    ------
+    InvalidQuantity
+        If there is not one column for each unit, or they are not of the same length.
+    """
+    names, lists = list(units), [list(map(float, column)) for column in columns]
+    lengths = [len(column) for column in lists]
+    if len(names) != len(lists) or len(set(lengths)) > 1:
+        raise InvalidQuantity(
+            f"a history of {', '.join(names)} has columns of the lengths {lengths}; needed: one each, equally long"
+        )
     return tuple(
-        StepRecord(number, 0, 0.0, dict(zip(units, map(float, values), strict=True)))
-        for number, values in enumerate(zip(*columns, strict=True), 1)
+        StepRecord(number, 0, 0.0, dict(zip(names, values, strict=True)))
+        for number, values in enumerate(zip(*lists, strict=True), 1)
     )
 
 
@@ -88,6 +101,11 @@ class Result:
     scene : further data for later stages; see `scene_as`
     experiment : what was run; None if the result was loaded from disk
     provenance : the case with its id, versions, seeds and the identity of the code, where known
+
+    Raises
+    ------
+    InvalidQuantity
+        If something else than a quantity is among them, or has a unit that is unknown.
     """
 
     kind: str
@@ -104,6 +122,16 @@ class Result:
     scene: Scene | UnreadableScene | None = None
     experiment: Any = field(default=None, compare=False)
     provenance: Mapping[str, Any] = field(default_factory=dict, compare=False)
+
+    def __post_init__(self) -> None:
+        for name, one in self.quantities.items():
+            if not isinstance(one, Quantity):
+                raise InvalidQuantity(f"{name} is a {type(one).__name__}; needed: Quantity(value, unit, description)")
+        for name, unit in [*((name, one.unit) for name, one in self.quantities.items()), *self.units.items()]:
+            if not isinstance(unit, str) or not is_unit(unit):
+                raise InvalidQuantity(
+                    f"{name} has the unknown unit {shown(unit)}; needed: an SI unit as text, such as 'N', or '1'"
+                )
 
     def __getitem__(self, name: str) -> Quantity:
         """A quantity by its name.

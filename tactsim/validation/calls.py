@@ -6,13 +6,13 @@ import inspect
 import re
 from collections.abc import Callable, Iterable
 from functools import cache
-from typing import Any, ClassVar, Literal, Self, get_type_hints
+from typing import Annotated, Any, ClassVar, Literal, Self, Union, get_type_hints
 
 from pydantic import Field, create_model, model_validator
 
 from tactsim.errors import InputError
 from tactsim.model import FrozenModel
-from tactsim.registry import MarkedFunction, marked_functions, union_of
+from tactsim.registry import MarkedFunction, marked_functions
 from tactsim.validation.inputs import Inputs
 
 PACKAGE = "tactsim.validation.quantities"
@@ -76,7 +76,7 @@ def any_call(functions: Iterable[MarkedFunction]) -> Any:
     InputError
         If a signature does not say what a table may write.
     """
-    return union_of({marked.name: call_class(marked) for marked in functions})
+    return _union_of({marked.name: call_class(marked) for marked in functions})
 
 
 @cache
@@ -112,3 +112,9 @@ def descriptions(function: Callable[..., Any]) -> dict[str, str]:
     section = re.search(r"^Parameters\n-+\n((?:.+\n?)+)", inspect.getdoc(function) or "", re.MULTILINE)
     entries = re.findall(r"^(\w+(?:, \w+)*) : (.+(?:\n +.+)*)", section[1] if section else "", re.MULTILINE)
     return {name: " ".join(text.split()) for names, text in entries for name in names.split(", ")}
+
+
+def _union_of(known: dict[str, Any]) -> Any:
+    """Pydantic type of these classes, told apart by ``kind``."""
+    choices = tuple(known[kind] for kind in sorted(known))
+    return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007

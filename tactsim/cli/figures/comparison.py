@@ -16,7 +16,7 @@ from tactsim.cli.figures.compared_maps import draw_maps, taxel_maps
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
-from tactsim.plotting.canvas import despined, entitle, new_figure, png, scale_of, styled
+from tactsim.plotting.canvas import despined, encoded, entitle, new_figure, scale_of, styled
 from tactsim.results import Result
 from tactsim.results.compared_numbers import FROM_FIRST, LARGEST, Column
 from tactsim.results.comparison import Comparison
@@ -87,9 +87,9 @@ def _draw_bars(figure: FigureBase, comparison: Comparison, columns: Sequence[Col
         despined(axis)
 
 
-def comparison_png(results: Mapping[str, Result], comparison: Comparison) -> bytes:
-    """`comparison_figure` as PNG."""
-    return png(comparison_figure(results, comparison))
+def drawn_comparison(results: Mapping[str, Result], comparison: Comparison, form: str = "png") -> bytes:
+    """`comparison_figure` as PNG, SVG or PDF."""
+    return encoded(comparison_figure(results, comparison), form)
 
 
 def _title(comparison: Comparison) -> list[str]:
@@ -127,16 +127,19 @@ def _draw_curves(axis: Axes, results: Mapping[str, Result], pair: tuple[str, str
     series = {name: [result.history_values(one) for one in pair] for name, result in results.items()}
     units = next(iter(results.values())).units
     scales = [scale_of(max(np.nanmax(np.abs(values[k])) for values in series.values()), units[pair[k]]) for k in (0, 1)]
+    shortest_last = sorted(series, key=lambda name: -np.nanmax(np.abs(series[name][0])))
     for number, (name, (x, y)) in enumerate(series.items()):
         dash, mark = DASHES[number % len(DASHES)], MARKS[number // len(DASHES) % len(MARKS)]
         if len(x) == 1:
             dash, mark = "none", mark or "o"
         label = _labelled(name, results[name])
-        axis.plot(scales[0][0] * x, scales[1][0] * y, linestyle=dash, marker=mark, markevery=[-1], markersize=5, label=label)
+        above = 2 + shortest_last.index(name) / len(series)  # where two coincide, both are seen
+        style: dict[str, Any] = {"linestyle": dash, "marker": mark, "markevery": [-1], "markersize": 5, "zorder": above}
+        axis.plot(scales[0][0] * x, scales[1][0] * y, label=label, **style)
     reached = [place for result in results.values() if (place := _threshold(result, pair)) is not None]
     if reached:
         x, y = (factor * np.array(values) for (factor, _), values in zip(scales, zip(*reached, strict=True), strict=True))
-        axis.plot(x, y, "*", color="white", markeredgecolor="black", markersize=11, label="threshold", zorder=3)
+        axis.plot(x, y, "*", color="none", markeredgecolor="black", markersize=13, label="threshold", zorder=3)
     axis.set_xlabel(f"{pair[0].replace('_', ' ')} in {scales[0][1]}")
     axis.set_ylabel(f"{pair[1].replace('_', ' ')} in {scales[1][1]}")
     axis.legend()

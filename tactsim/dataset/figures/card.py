@@ -58,8 +58,8 @@ def spread(numbers: dict[str, tuple[Array, str]], title: str) -> Figure:
             axis.hist(factor * values, bins=20, color="0.45")
             axis.set_title(name.replace("_", " ") + (f" in {shown}" if shown else ""), loc="left", fontsize=7)
             axis.yaxis.set_major_locator(MaxNLocator(nbins=3, integer=True))
-            if np.array_equal(factor * values, np.round(factor * values)):  # a count, such as that of inclusions
-                axis.xaxis.set_major_locator(MaxNLocator(nbins=6, integer=True))
+            counted = np.array_equal(factor * values, np.round(factor * values))  # such as the number of inclusions
+            axis.xaxis.set_major_locator(MaxNLocator(nbins=6 if counted else 4, integer=counted))
             axis.tick_params(labelsize=7)
             if number % COLUMNS == 1:
                 axis.set_ylabel("values", fontsize=7)

@@ -20,6 +20,7 @@ from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.readings import ROUNDING_NOISE, noise_in_words
+from tactsim.localization.checked_estimate import estimate_of
 from tactsim.localization.estimators.hypotheses import CLASSES
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.text import markdown_table
@@ -71,7 +72,7 @@ def store_confusion(
             continue
         added = noise * np.random.default_rng([seed, int(number)]).standard_normal((2, *change.shape))
         readings = replace(plain, forces=change + added[0], reference=plain.forces + added[1], response=response)
-        table.add(true, estimated_class(estimator.estimate(readings)))
+        table.add(true, estimated_class(estimate_of(estimator, readings)))
     return table, others
 
 

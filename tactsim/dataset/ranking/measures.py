@@ -16,6 +16,7 @@ from tactsim.dataset.ranking.samples import JudgedSamples, Truth
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import LEVEL, Estimate
+from tactsim.localization.checked_estimate import estimate_of
 from tactsim.localization.lump_response import LumpResponse
 
 NOISES = (1.0, 2.0, 4.0)
@@ -82,7 +83,7 @@ def outcomes(
     if estimator.needs_response and model is None:
         raise InputError(f"the estimator {estimator.kind} needs the response of the tissue")
     readings = samples.readings(model, multiple=multiple, seed=seed)
-    return [outcome(estimator.estimate(each), truth) for each, truth in zip(readings, samples.truths, strict=True)]
+    return [outcome(estimate_of(estimator, each), truth) for each, truth in zip(readings, samples.truths, strict=True)]
 
 
 def measures(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, Any]:

@@ -82,8 +82,18 @@ def against_baseline(ranked: Sequence[Ranked]) -> dict[str, dict[str, float]]:
     return ratios
 
 
-def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str]) -> str:
-    """The table in Markdown."""
+def seen_words(seen: int, samples: JudgedSamples) -> str:
+    """What a reader must know if an estimator was trained on ``seen`` of the samples; empty of none."""
+    if not seen:
+        return ""
+    return (
+        f"Warning: learned was trained on {seen} of these {len(samples.truths)} grasps, so its numbers do not say what it does "
+        "with others; rank a part that it has not seen, such as --split test, or another data set."
+    )
+
+
+def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str], seen: int = 0) -> str:
+    """The table in Markdown; ``seen`` samples were those of the training."""
     lumps = sum(truth.present for truth in samples.truths)
     lines = [
         "# Ranking of estimators",
@@ -92,6 +102,7 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
         f"noise of a reading {noise_in_words(samples.noise)}. {SCORE}",
         f"In brackets the {INTERVAL:.0%} interval, of rates by Wilson, of all else by the bootstrap.",
         "",
+        *([seen_words(seen, samples), ""] if seen else []),
         *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),
         "",
     ]
@@ -105,15 +116,17 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
     return "\n".join([*lines, *(f"![{name}]({name})" for name in figures), ""])
 
 
-def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples) -> str:
-    """What a terminal of 80 columns shows of it: counts, the main numbers without their intervals, and the ratios."""
+def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples, seen: int = 0) -> str:
+    """What a terminal of 80 columns shows of it: counts, the main numbers without their intervals, and the ratios; ``seen``
+    samples were those of the training.
+    """
     lumps = sum(truth.present for truth in samples.truths)
     counts = f"{len(samples.truths)} grasps, {lumps} with a lump; readings {samples.source}, noise of a reading "
     rows = [["estimator", *(heading for heading, _, _ in BRIEF)]]
     for one in ranked:
         rows.append([one.name, *(_cell(one.measures, place, unit).partition(" ")[0] for _, place, unit in BRIEF)])
     ratios = [f"{name}: median errors over those of {BASELINE}: {_ratios(one)}" for name, one in against_baseline(ranked).items()]
-    words = [line for given in (BRIEFLY, *ratios) for line in wrap(given, SCREEN)]
+    words = [line for given in (BRIEFLY, *ratios, seen_words(seen, samples)) for line in wrap(given, SCREEN)]
     return "\n".join([*wrap(counts + noise_in_words(samples.noise), SCREEN), "", *aligned(rows), "", *words])
 
 

@@ -74,6 +74,8 @@ class JudgedSamples:
     """Standard deviation in N of a reading, as stated."""
     own_noise: float = 0.0
     """That of the forces as they are; the rest is added."""
+    cases: tuple[str, ...] = ()
+    """Hash of the case of each sample, as the store has it."""
 
     @property
     def block_size(self) -> Array:
@@ -153,7 +155,8 @@ def judged_samples(
         )
     given = noise if noise is not None else 0.0 if source == READ_FORCE else ROUNDING_NOISE
     stated = float(np.hypot(electronic, given))
-    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic)
+    cases = tuple(map(str, data["case_id"].values))
+    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic, cases)
 
 
 def stored_experiment(store: str | Path) -> Grasp:
@@ -209,7 +212,10 @@ def _check_store(data: xarray.Dataset, source: Source, name: str, split: str | S
         raise InputError(f"{name} has no labels of inclusions; needed: grasps with a lump, as of cases/sweep_lumps.yaml")
     count = data["inclusion_count"].values
     if (count > 1).any() or ((count == 1) & (data["inclusion_kind"].values[:, 0] != SPHERE)).any():
-        raise InputError(f"{name} has samples with other than one ball; needed: one ball or none in every sample of the part")
+        raise InputError(
+            f"{name} has samples{part} with other than one ball; needed: one ball or none in every sample; what estimators of "
+            "several hypotheses take such samples for is counted by tactsim data confusion"
+        )
     if not np.isfinite(data["closing"].values).all():
         raise InputError(f"{name} has grasps by a prescribed force; needed: a prescribed displacement of the jaws")
 

@@ -81,6 +81,7 @@ def trained(samples: JudgedSamples, response: LumpResponse | None = None, *, see
     bare = LearnedWeights(
         samples.plain.readings.layout, samples.block_size, middle, scale, places, presence, np.zeros((4, 4)), np.zeros(2)
     )
+    bare = replace(bare, trained_on=samples.cases)
     return _with_uncertainty(bare, *_noisy(_mirrored(examples.taken(held), samples), samples, generator, exact=True))
 
 
@@ -191,3 +192,8 @@ def _with_uncertainty(bare: LearnedWeights, features: Array, targets: Array) -> 
     counted = len(features) // len(list(mirror_images(bare.block_size, bare.layout.rows, bare.layout.columns)))
     error = float(np.median(np.linalg.norm(away[:, :2], axis=1))), float(np.median(np.abs(away[:, 2])))
     return replace(bare, covariance=covariance, growth=growth, held_out=counted, held_out_error=error)
+
+
+def seen_in_training(learned: LearnedWeights, samples: JudgedSamples) -> int:
+    """Number of the samples that the weights were trained on, by their cases."""
+    return len(set(learned.trained_on).intersection(samples.cases) - {""})

@@ -85,7 +85,11 @@ def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float
         warnings.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")
     if reading.saturated.any():
         count = int(reading.saturated.sum())
-        warnings.append(f"{count} samples of taxels are outside the range of the converter or not below the supply: saturated_*")
+        where = "" if (reading.saturated & (reading.applied > 0)).any() else ", all of them without a force"
+        warnings.append(
+            f"{count} of {reading.saturated.size} samples of taxels are outside the range of the converter or not below the "
+            f"supply{where}: saturated_*"
+        )
     return tuple(warnings)
 
 

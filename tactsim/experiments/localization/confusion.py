@@ -27,6 +27,7 @@ from tactsim.interfaces import Experiment, Inclusion
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.interfaces.run import Course, Findings
+from tactsim.localization.checked_estimate import estimate_of
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
@@ -80,7 +81,7 @@ class Confusion(Experiment):
 
     def _estimated(self, readings: Sequence[tuple[str, str, Readings]], counted: _Counted) -> Iterator[StepRecord]:
         for number, (name, true, one) in enumerate(readings):
-            estimates = [self.estimator.estimate(self._noisy(one, number, draw)) for draw in range(self.draws)]
+            estimates = [estimate_of(self.estimator, self._noisy(one, number, draw)) for draw in range(self.draws)]
             alone = ConfusionTable()
             for estimate in estimates:
                 for table in (counted.table, alone):

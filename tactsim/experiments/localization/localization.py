@@ -28,6 +28,7 @@ from tactsim.interfaces.estimate import Estimate, inclusion_in_words
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, silent_taxels, silent_words
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
+from tactsim.localization.checked_estimate import estimate_of
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.lump_response import stiffness_ratio_of, stiffness_words
@@ -97,7 +98,7 @@ class Localization(Experiment):
         plain = None if self.reference is None else stored_grasp(self.reference)
         readings = self._readings(stored, plain)
         with elapsed_time(f"estimating: {self.estimator.kind.replace('_', ' ')}"):
-            estimate = self.estimator.estimate(readings)
+            estimate = estimate_of(self.estimator, readings)
         scene = stored.scene_as(GraspScene)
         true = [shape.places(readings.block_size) for shape in scene.true_inclusions]
         return Course.computed(

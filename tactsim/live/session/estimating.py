@@ -19,6 +19,7 @@ from tactsim.live.sources.noise import given_noise
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import Frame, PageScene
 from tactsim.live.sources.watch import Watch
+from tactsim.localization.checked_estimate import estimate_of
 from tactsim.localization.lump_response import stiffness_words
 from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.localization.region import shadows
@@ -76,7 +77,7 @@ def estimated(
         readings = replace(readings, response=reference.response(readings.closing, watch))
     watch.stage = "comparing what could be there with the readings"
     with stopped_by(watch.asked_to_stop):
-        estimate = choice.estimator.estimate(readings)
+        estimate = estimate_of(choice.estimator, readings)
     misfit = plain_parts_warning(readings, estimate)
     of_these = choice.name != STORED
     bare = [BARE] if readings.difference is None and estimate.inclusions and of_these else []
@@ -154,7 +155,8 @@ def _errors(scene: PageScene, estimate: Estimate) -> list[str]:
     size = _radius_error(scene, estimate.inclusions[0])
     digits = decimals_of_places(scene.size)
     along = f"{round(1e3 * depth, digits) + 0.0:+.{digits}f} mm in height"
-    return [f"Off by {1e3 * lateral:.{digits}f} mm in plan and {along}{size}"]
+    first = " (the first)" if len(estimate.inclusions) > 1 else ""
+    return [f"Off by {1e3 * lateral:.{digits}f} mm in plan and {along}{size}{first}"]
 
 
 def _radius_error(scene: PageScene, one: EstimatedInclusion) -> str:

@@ -151,7 +151,8 @@ class ModelBasedEstimator(Estimator):
         pair = self._pair(readings, fit, between=not region.contains(mean[:3]))
         near = pair is not None and _apart(pair) < readings.layout.pitch
         if pair is not None and not near:
-            return replace(pair, probability=probability, factor=fit.factor)
+            reason = pair.reason + factor_words(fit.factor)
+            return replace(pair, reason=reason, probability=probability, factor=fit.factor)
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
         reason = f"a {'softer' if contrast < 0 else 'stiffer'} ball with a probability of {probability:.3g}"
         if pair is not None:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.contact.checks import check_body, check_law
 from tactsim.contact.traction import ContactIterate, ContactPair, ContactState, ContactTraction, at_points
 from tactsim.fem.assembly.surface import SurfaceAssembly
 
@@ -34,8 +35,16 @@ class PosedContact:
 
     @classmethod
     def apart(cls, surface: SurfaceAssembly, reference: Array, pair: ContactPair, place: Array) -> PosedContact:
-        """A pair whose surfaces have not met yet."""
+        """A pair whose surfaces have not met yet.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the body or the law returns what cannot be used.
+        """
         points = reference - place[:, None]
+        check_body(pair.body, points)
+        check_law(pair.law)
         return cls(surface, reference, pair, place, ContactState.untouched(points, pair.body.signed_distance(points)[1]))
 
     def of_part(self, surface: SurfaceAssembly, points: Array) -> PosedContact:

@@ -96,6 +96,13 @@ class TriangulatedSolid(Solid):
         """Volume in m^3, by the divergence theorem."""
         return self._volume
 
+    def centroid(self) -> Array:
+        """Centre (3,) of its volume in m: of tetrahedra between a vertex and the triangles, those seen from behind negative."""
+        origin = self.vertices[0]
+        corners = self.vertices[self.faces] - origin
+        volumes = np.linalg.det(corners) / 6
+        return np.asarray(origin + volumes @ corners.sum(axis=1) / 4 / self._volume)
+
     def bounds(self) -> Array:
         """Lowest and highest coordinates (2, 3) in m."""
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])

@@ -56,6 +56,16 @@ def test_several_cases_become_one_table_and_one_figure(cases: list[str], capsys:
     assert [row["outer_radius [mm]"] for row in rows] == ["3", "4"]
 
 
+def test_the_figure_of_a_comparison_has_the_form_that_is_asked_for(cases: list[str]) -> None:
+    """For a paper: it was a PNG, whatever the form of the other figures."""
+    assert main(["run", *cases, "--out", "designs", "--figures", "svg", "--quiet"]) == 0
+    assert b"<svg" in Path("designs/comparison/comparison.svg").read_bytes()
+    assert main(["compare", "designs", "--out", "again", "--figures", "pdf"]) == 0
+    assert Path("again/comparison.pdf").read_bytes().startswith(b"%PDF")
+    assert main(["compare", "designs", "--out", "again", "--figures", "none"]) == 0
+    assert sorted(path.name for path in Path("again").glob("comparison.*")) == ["comparison.csv", "comparison.md"]
+
+
 def test_a_warning_of_several_cases_is_said_in_the_report_of_its_own_alone(
     cases: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -179,6 +189,17 @@ def test_curves_are_told_apart_without_colour_and_the_title_says_what_differs() 
     assert lines[-1].get_label() == "threshold"
     assert len(lines[-1].get_xdata()) == 2
     assert figure.get_suptitle() == "13 results that differ in tissue, mesh.size"
+
+
+def test_a_curve_that_ends_on_another_one_lies_above_it_and_no_mark_is_hidden() -> None:
+    """Of five recesses the first and the fifth differ by the mark at the end alone, which lay below the star of the threshold."""
+    results = {f"run{number}": pressed("icf_stable", 3e-3, size=1e-3 * number) for number in range(5)}
+    results["run0"] = replace(results["run0"], steps=results["run0"].steps[:3])
+    figure = comparison_figure(results, compared(results, lambda experiment, path: "", _name_of))
+    *curves, stars = figure.axes[0].lines
+    assert all(curves[0].get_zorder() > longer.get_zorder() for longer in curves[1:])
+    assert all(stars.get_zorder() > curve.get_zorder() for curve in curves)
+    assert stars.get_markerfacecolor() == "none"
 
 
 def grasped(steps: int, forces: list[list[float]], *warnings: str, solver: float = 1.0) -> Result:

@@ -51,6 +51,8 @@ def test_a_file_is_written_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch,
     monkeypatch.chdir(tmp_path)
     assert main(["new", "film_test"]) == 0
     assert "run it with: tactsim run film_test.yaml" in capsys.readouterr().out
+    assert main(["new", "film_test", "my film.yaml"]) == 0
+    assert "run it with: tactsim run 'my film.yaml'\n" in capsys.readouterr().out, "as it can be pasted"
     (tmp_path / "film_test.yaml").write_text("mine")
     assert main(["new", "film_test"]) == 5
     assert (tmp_path / "film_test.yaml").read_text() == "mine"

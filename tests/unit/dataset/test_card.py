@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 
@@ -102,3 +103,22 @@ def test_the_figures_of_a_card_have_a_title_and_words_that_stand_clear() -> None
         assert colliding_words(figure) == []
         assert figure.get_suptitle() == "Lumps: 3 samples"
     assert "mean force in µN" in text_of(figures[0])
+
+
+def test_ticks_of_narrow_ranges_are_not_written_over_each_other() -> None:
+    """Of a direction from -0.06 to 0.07 they ran together."""
+    shares = np.linspace(0, 1, 30)
+    ranges = {
+        "direction_z": (-0.058, 0.069),
+        "volume_ratio": (0.804, 0.94),
+        "tiny": (1.00012, 1.00019),
+        "large": (-2600.0, 2666.0),
+    }
+    figure = spread({name: (low + (high - low) * shares, "1") for name, (low, high) in ranges.items()}, "Lumps: 30 samples")
+    figure.draw_without_rendering()
+    for axis in figure.axes:
+        low, high = axis.get_xlim()
+        ticks = [tick for tick in axis.xaxis.get_major_ticks() if low <= tick.get_loc() <= high]
+        boxes = sorted((box.x0, box.x1) for tick in ticks if (box := tick.label1.get_window_extent()).width > 1)
+        assert len(boxes) >= 2
+        assert all(first[1] + 4 < second[0] for first, second in pairwise(boxes)), axis.get_title(loc="left")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -11,19 +12,22 @@ from typing import Any
 import numpy as np
 import pytest
 from drawn import colliding_words
-from made_grasps import SIZE, made_samples, made_store, plain_result, response
+from made_grasps import LAYOUT, SIZE, made_samples, made_store, plain_result, response
 from scipy.stats import norm
 
 from tactsim.cli import main
 from tactsim.dataset.figures.estimator_ranking import AXES, errors_figure, ranking_figures, roc, roc_figure
 from tactsim.dataset.ranking.measures import JudgedEstimate, binned, interval, measures, outcome, penalty, ranking, share
-from tactsim.dataset.ranking.report import against_baseline, as_text, record
-from tactsim.dataset.ranking.samples import Truth
+from tactsim.dataset.ranking.report import against_baseline, as_summary, as_text, record
+from tactsim.dataset.ranking.samples import Truth, judged_samples
+from tactsim.dataset.ranking.training import seen_in_training
 from tactsim.errors import InputError
+from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import noise_in_words
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.localization.networks import LearnedWeights, Network, read_weights
 from tactsim.localization.region import GaussianRegion
 
 LUMP = Truth(1, 1e-3, (20e-3, 20e-3, 12e-3), 4e-3, 8e-3, 10.0)
@@ -163,6 +167,29 @@ def test_the_command_writes_report_and_figures(
     assert names == {".tactsim.json", "report.json", "report.md", "errors.png", "noise.png", "places.png"}
     assert main([*order, "--learned", str(tmp_path / "none.npz")]) == 5
     assert "No such file" in capsys.readouterr().err
+
+
+def test_an_estimator_that_was_trained_on_what_it_is_ranked_by_is_warned_of(tmp_path: Path) -> None:
+    """Ranked by the whole store that it was trained on it came first, and nothing said so."""
+    table = response()
+    store, plain = made_store(tmp_path, table, training=30), plain_result(tmp_path / "plain")
+    assert len(judged_samples(store, [plain], source=TAXEL_FORCE, noise=1e-3).cases) == 40, "one for each sample"
+    made = made_samples(12, table)
+    ranked = replace(made, cases=tuple(f"case {truth.sample}" for truth in made.truths))
+    learned = replace(ranked, cases=ranked.cases[:8])
+    one = Network((np.zeros((20, 4)),), (np.zeros(4),))
+    weights = LearnedWeights(
+        LAYOUT, SIZE, np.zeros(20), np.ones(20), (one,), one, np.eye(4), np.zeros(2), trained_on=learned.cases
+    )
+    (tmp_path / "weights.npz").write_bytes(weights.content())
+    weights = read_weights(tmp_path / "weights.npz")
+    seen = seen_in_training(weights, ranked)
+    assert seen == 8
+    for text in (as_text([], ranked, (), seen), " ".join(as_summary([], ranked, seen).split())):
+        assert f"learned was trained on {seen} of these {len(ranked.truths)} grasps" in text
+    unseen = seen_in_training(weights, replace(ranked, cases=ranked.cases[8:]))
+    assert unseen == seen_in_training(replace(weights, trained_on=("",)), replace(ranked, cases=("",))) == 0
+    assert "trained on" not in as_text([], ranked, (), unseen)
 
 
 @pytest.mark.parametrize("contrasts", [(1.69, 1.69), (1.5, 4.0), (1.5, 100.0)])

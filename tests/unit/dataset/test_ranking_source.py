@@ -139,5 +139,7 @@ def test_stores_that_cannot_be_judged_are_refused(store: Path, plain: str, tmp_p
 def test_the_command_line_says_what_is_missing(store: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["data", "rank", str(store)]) == 2
     assert "--reference is missing" in capsys.readouterr().err
+    assert main(["data", "train", str(store), "--reference", "x", "--out", "w.txt"]) == 2
+    assert "train: --out w.txt is no place for weights; name a file ending in .npz" in capsys.readouterr().err
     assert main(["data", "rank", str(store), "--reference", "x", "--noise", "-1 mN"]) == 2
     assert "--noise" in capsys.readouterr().err

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -329,6 +330,9 @@ def test_reasons_that_differ_in_their_numbers_count_as_one_and_keep_them() -> No
     cut = TextCounts()
     cut.update([159 * "x" + "1", 160 * "x" + "2", 160 * "x" + "3"])
     assert cut.most_common() == [(160 * "x", 2), (159 * "x" + "1", 1)]
+    ranges = TextCounts()
+    ranges.update(["0.2% (ratios of 0.85 to 1.12)", "0.3% (ratios of 0.86 to 1.11)"])
+    assert ranges.most_common() == [("0.2 to 0.3% (ratios of 0.85 to 1.12)", 2)], "not 0.85 to 0.86 to 1.11 to 1.12"
 
 
 def test_the_description_and_the_card_say_the_numbers_of_failures(store: Path) -> None:
@@ -378,7 +382,8 @@ def test_a_signal_stops_a_sweep_in_good_order(tmp_path: Path, number: signal.Sig
     out, err = process.communicate(timeout=60)
     assert process.returncode == 130
     assert "Traceback" not in err
-    assert "samples are left; go on with: tactsim sweep" in out
+    (going_on,) = (line.partition(": ")[2] for line in out.splitlines() if "samples are left; go on with: " in line)
+    assert shlex.split(going_on) == ["tactsim", "sweep", str(case), "--samples", "20000", "--out", str(place), "--resume"]
     assert [finding.kind for finding in check(place).findings] == ["missing"]
     computed = int((Store.open(place).read("status") == 1).sum())
     assert 0 < computed < 20000

@@ -116,7 +116,7 @@ def test_the_estimate_of_a_localization_is_offered_first(tmp_path: Path) -> None
         "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm",
         NO_ERROR,
     ]
-    assert found["errors"] == ["Off by 1.0 mm in plan and +0.0 mm in height, radius off by +0.0 mm"]
+    assert found["errors"] == ["Off by 1.0 mm in plan and +0.0 mm in height, radius off by +0.0 mm (the first)"]
     assert found["inclusions"][1]["line"] == [[0, 20, 10], [40, 20, 10]]
     change(folder, ("scene", "estimates"), [{"kind": "sphere"}])
     with pytest.raises(StorageError, match="not a complete result of a localization"):

@@ -140,7 +140,8 @@ def test_training_finds_lumps_and_needs_enough(tmp_path, monkeypatch):
     monkeypatch.setattr(training, "HIDDEN", (32,))
     monkeypatch.setattr(training, "COPIES", 1)
     table = response()
-    trained = training.trained(made_samples(48, table, seed=2), table)
+    trained = training.trained(replace(made_samples(48, table, seed=2), cases=("a", "b")), table)
+    assert trained.trained_on == ("a", "b")
     plan, height = trained.held_out_error
     assert 0 < plan < 10e-3
     assert 0 < height < 10e-3

@@ -85,5 +85,27 @@ def test_a_lump_is_not_held_against_the_reference() -> None:
 def test_nothing_is_said_without_a_reference_or_plain_parts() -> None:
     assert plain_parts(Readings(PLAIN, LAYOUT, SIZE), NOTHING) is None
     everywhere = tuple(EstimatedInclusion("unknown", (x, y, 10e-3)) for x in (10e-3, 30e-3) for y in (10e-3, 30e-3))
-    assert plain_parts(read(PLAIN), Estimate(True, everywhere, "lumps")) is None
+    lumps = Estimate(True, everywhere, "lumps", factor=1.04)
+    assert plain_parts(read(PLAIN), lumps) is None
+    assert plain_parts_warning(read(PLAIN), lumps) is None
     assert plain_parts(replace(read(PLAIN), valid=np.arange(18).reshape(2, 3, 3) % 2 == 0), NOTHING).taxels == 9
+
+
+def test_a_factor_is_doubted_where_no_plain_parts_are_left() -> None:
+    """Two arteries under all taxels: a factor of 2.3 with a reference of the same tissue was stated without a doubt."""
+    lines = [((0.0, y, 10e-3), (40e-3, y, 10e-3)) for y in (10e-3, 30e-3)]
+    tubes = tuple(EstimatedInclusion("tube", (20e-3, line[0][1], 10e-3), 4e-3, line=line) for line in lines)
+    words = plain_parts_warning(read(2.3 * PLAIN), Estimate(True, tubes, "two arteries", factor=2.3))
+    assert words is not None
+    assert "whether its factor of 2.3 is of tissue and sensors" in words
+    assert plain_parts_warning(read(2.3 * PLAIN), Estimate(True, tubes, "two arteries")) is None
+
+
+def test_two_balls_are_stated_with_the_factor_of_the_readings() -> None:
+    """The words of one ball, and of none, had it; those of two did not."""
+    lumps = sum(10.0 * response().signal(np.array([place]), np.array([4e-3]))[0] for place in (CORNER, (30e-3, 30e-3, 10e-3)))
+    given = replace(read(1.4 * PLAIN + lumps), response=response())
+    estimate = ModelBasedEstimator().estimate(given)
+    assert len(estimate.inclusions) == 2
+    assert estimate.factor == pytest.approx(1.4, abs=0.05)
+    assert f"the readings are {estimate.factor:.3g} times those of the reference" in estimate.reason

@@ -249,6 +249,17 @@ def test_a_surface_turned_inside_out_as_a_whole_is_put_right(tmp_path):
     assert solid.inside(np.array([[0.02, 0.02, 0.01]])).all()
 
 
+@pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (0.4, -0.7, 1.1)])
+def test_the_centre_of_a_surface_is_that_of_its_volume_however_it_is_turned(turn, tmp_path):
+    """It was the middle of its bounds, which wanders as a lump turns: in a tetrahedron by a quarter of its sides."""
+    corners = 8 * np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+    body = surface_of(tmp_path, corners, [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]])
+    placed = body.model_copy(update={"translation": (15e-3, 16e-3, 6e-3), "rotation": turn})
+    (solid,) = placed.solids(SIZE)
+    np.testing.assert_allclose(placed.measures(SIZE).center, solid.vertices.mean(axis=0), atol=1e-12)
+    assert np.abs(solid.bounds().mean(axis=0) - solid.vertices.mean(axis=0)).max() > 0.5e-3
+
+
 def read_whole_and_refuse_truncated(ending, tmp_path):
     vertices, faces = irregular()
     whole = surface_of(tmp_path, vertices, faces, ending)

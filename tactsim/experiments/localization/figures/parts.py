@@ -58,5 +58,7 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
         lines.append(_contrast(result))
     if "lateral_error" in quantities:
         lateral, depth = (1e3 * float(quantities[f"{name}_error"].value) for name in ("lateral", "depth"))
-        lines.append(with_minus(f"Off by {lateral:.{digits}f} mm in plan, {round(depth, digits) + 0.0:+.{digits}f} mm in height"))
+        first = " (the first)" if len(places) > 1 else ""
+        off = f"Off by {lateral:.{digits}f} mm in plan, {round(depth, digits) + 0.0:+.{digits}f} mm in height{first}"
+        lines.append(with_minus(off))
     return tuple(lines)

@@ -10,12 +10,12 @@ from scenes import unmarked_figures
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.matrix_readout import MatrixReadoutRun
-from tactsim.experiments.grasp.taxel_voltages import single_step
+from tactsim.experiments.grasp.taxel_voltages import readout_warnings, single_step
 from tactsim.plotting import figures_for
 from tactsim.results import Status
 from tactsim.results.writing import write_result
 from tactsim.sensors.films.capacitive_film import CapacitiveFilm
-from tactsim.sensors.matrix_readout import MatrixReadout
+from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
 
 READOUT = MatrixReadout(seed=4)
 
@@ -107,3 +107,18 @@ def test_a_folder_without_a_grasp_is_refused(tmp_path):
     write_result(FilmTest.example().run(), tmp_path / "film", case_id="0" * 16, provenance={})
     with pytest.raises(InputError, match="needed: a grasp"):
         MatrixReadoutRun(grasp=str(tmp_path / "film")).run()
+
+
+def test_samples_beyond_the_converter_without_a_force_are_told_apart():
+    """Noise about 0 V alone read as if the sensors were saturated, in every grasp with noise."""
+    readout = MatrixReadout()
+    size = (3, 2, 3, 3)
+    applied, saturated = np.zeros(size), np.zeros(size, bool)
+    saturated[0, 0, 0] = True
+    reading = MatrixReading(np.arange(3.0), applied, *(np.zeros(size) for _ in range(3)), saturated, 0.0)
+    (unloaded,) = readout_warnings(readout, reading, 1e-4)
+    assert unloaded.startswith("3 of 54 samples of taxels are outside the range")
+    assert ", all of them without a force: saturated_*" in unloaded
+    applied[0, 0, 0] = 1.0
+    (loaded,) = readout_warnings(readout, reading, 1e-4)
+    assert "without a force" not in loaded

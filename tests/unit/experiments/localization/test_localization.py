@@ -152,6 +152,7 @@ def test_several_places_are_all_named_in_the_result(folders, tmp_path):
     shown = localized(result)
     assert len(shown.estimates) == 2
     assert "2 places explain" in " ".join(shown.findings)
+    assert [line.endswith(" in height (the first)") for line in shown.findings if line.startswith("Off by")] == [True]
     assert not [words for words in run(folders).warnings if "no one place" in words]
 
 

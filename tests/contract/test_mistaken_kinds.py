@@ -1,0 +1,212 @@
+"""Kinds of an author of an extension that are wrong: each is refused where it is used, with its class and method named."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal
+
+import numpy as np
+import pytest
+from made_grasps import LAYOUT, NOISE, SIZE, plain_forces
+
+from tactsim.contact.checks import check_body, check_law
+from tactsim.errors import InputError, InvalidQuantity
+from tactsim.interfaces import ContactLaw, Experiment, Inclusion, Material, RigidBody
+from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
+from tactsim.interfaces.readings import Readings
+from tactsim.interfaces.run import Course, Findings
+from tactsim.interfaces.solid import Point
+from tactsim.localization.checked_estimate import estimate_of
+from tactsim.materials.derivatives import check_derivatives
+from tactsim.materials.hyperelastic import Hyperelastic
+from tactsim.materials.library import LIBRARY
+from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mesh.any_inclusion import check_inclusions
+from tactsim.mesh.inclusions.sphere import Ball
+from tactsim.registry import kind_class
+from tactsim.results import Quantity, Result, Status
+from tactsim.results.document import document_text
+from tactsim.results.result import rows
+
+Array = np.ndarray
+POINTS = 1e-3 * np.array([[0.0, 1.0, 2.0], [-3.0, -2.0, -1.0]])
+
+
+def made_law(base: type[Hyperelastic], **methods: Callable[..., Any]) -> Any:
+    law: Any = type("Mine", (base,), {**methods, "__module__": __name__})  # no kind of its own: it is not registered
+    return law
+
+
+WRONG_LAWS = {
+    "factor": ({"energy_gradient": lambda s, I1, I2: (2 * s.c10 + 0 * I1, 0 * I1)}, "its W1 is .* Pa, by differences"),
+    "second": ({"energy_hessian": lambda s, I1, I2: (s.c10 + 0 * I1, 0 * I1, 0 * I1)}, "energy_hessian of Mine .* its W11 is"),
+    "one array": ({"energy_gradient": lambda s, I1, I2: s.c10 + 0 * I1}, r"must return \(W1, W2\).*it returned a ndarray"),
+    "two of three": ({"energy_hessian": lambda s, I1, I2: (0 * I1, 0 * I1)}, r"\(W11, W12, W22\).*it returned 2 of them"),
+    "shape": ({"energy_gradient": lambda s, I1, I2: (np.ones(5), 0 * I1)}, r"theirs are \(5,\), \(3,\)"),
+}
+
+
+@pytest.mark.parametrize("mistake", WRONG_LAWS)
+def test_a_law_whose_derivatives_are_wrong_is_refused(mistake: str) -> None:
+    """A wrong second derivative was a solver that gave up, a wrong first one the forces of another material."""
+    methods, words = WRONG_LAWS[mistake]
+    with pytest.raises(InputError, match=words):
+        made_law(NeoHookean, **methods)(c10=3e3)
+
+
+def test_every_shipped_material_has_the_derivatives_of_its_energy() -> None:
+    laws = [entry.material for entry in LIBRARY.values() if isinstance(entry.material, Hyperelastic)]
+    assert len(laws) > 5
+    for law in laws:
+        check_derivatives(law)
+
+
+def test_a_kind_that_lacks_a_method_says_which() -> None:
+    """It was an unknown kind, in a list of all others."""
+
+    class Unfinished(Hyperelastic):
+        kind: Literal["unfinished_law"] = "unfinished_law"
+
+        def energy(self, I1: Array, I2: Array) -> Array:
+            return I1
+
+    with pytest.raises(InputError, match=r"'unfinished_law': its class .*Unfinished lacks energy_gradient, energy_hessian"):
+        kind_class(Material, "unfinished_law")
+
+
+class Leaning(RigidBody):
+    """Returns what a test gives it."""
+
+    answer: Any = None
+
+    def signed_distance(self, x: Array) -> Any:
+        return self.answer(x)
+
+    @classmethod
+    def example(cls) -> Leaning:
+        return cls(kind="leaning")
+
+
+def upward(x: Array, sign: float = 1.0) -> tuple[Array, Array, Array]:
+    normal = np.zeros_like(x)
+    normal[-1] = sign
+    return -x[-1], normal, np.zeros((len(x), *x.shape))
+
+
+def test_a_body_of_other_shapes_or_with_its_normal_inwards_is_refused() -> None:
+    good = Leaning(kind="leaning", answer=lambda x: upward(x, -1.0))
+    check_body(good, POINTS)
+    with pytest.raises(InvalidQuantity, match="signed_distance of Leaning does not grow along its normal"):
+        check_body(Leaning(kind="leaning", answer=upward), POINTS)
+    with pytest.raises(InvalidQuantity, match=r"of the shapes \(3,\), \(2, 3\) and \(2, 2, 3\) at points \(2, 3\); it returned"):
+        check_body(Leaning(kind="leaning", answer=lambda x: (x[-1].sum(), np.zeros(3), 0.0)), POINTS)
+
+
+class Odd(ContactLaw):
+    """Returns what a test gives it."""
+
+    limit: Any = None
+
+    def traction_limit(self, pressure: Array) -> Any:
+        return self.limit(pressure)
+
+    def traction_limit_slope(self, pressure: Array) -> Array:
+        return 0.3 + 0 * pressure
+
+    @classmethod
+    def example(cls) -> Odd:
+        return cls(kind="odd")
+
+
+@pytest.mark.parametrize(
+    ("limit", "words"),
+    [
+        (lambda p: "much", "must return numbers"),
+        (lambda p: np.ones(7), "must return numbers"),
+        (lambda p: -p, "negative"),
+        (lambda p: np.nan * p, "no number"),
+    ],
+)
+def test_a_law_of_contact_without_a_limit_is_refused(limit: Any, words: str) -> None:
+    check_law(Odd(kind="odd", limit=lambda p: 0.3 * p))
+    with pytest.raises(InvalidQuantity, match=f"traction_limit of Odd.*{words}"):
+        check_law(Odd(kind="odd", limit=limit))
+
+
+class Lone(Inclusion):
+    """Its solid, not in a tuple."""
+
+    center: Point = (20e-3, 20e-3, 10e-3)
+
+    @classmethod
+    def example(cls) -> Lone:
+        return cls(kind="lone")
+
+    def solids(self, size: Array) -> Any:
+        return Ball(np.array(self.center), 4e-3)
+
+
+def test_an_inclusion_whose_solids_are_no_tuple_is_refused() -> None:
+    with pytest.raises(InvalidQuantity, match=r"solids\(\) of Lone returned .*Ball"):
+        check_inclusions(SIZE, [Lone.example()], 0.5e-3)
+
+
+class Answer:
+    """An estimator that gives what a test wants."""
+
+    def __init__(self, answer: Any):
+        self.answer = answer
+
+    def estimate(self, readings: Readings) -> Any:
+        return self.answer
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (None, "Answer returned a NoneType; needed: an Estimate"),
+        (lambda: Estimate(True, (EstimatedInclusion("sphere", (20.0, 20.0, 10.0)),), "in mm"), "far from the block"),
+        (lambda: Estimate(True, (EstimatedInclusion("sphere", (20e-3, 20e-3)),), "flat"), r"shape \(2,\)"),  # type: ignore[arg-type]
+    ],
+)
+def test_an_estimate_in_mm_or_of_nothing_is_refused(answer: Any, words: str) -> None:
+    forces = plain_forces(np.array([1e-3]))[0]
+    with pytest.raises(InvalidQuantity, match=words):
+        estimate_of(Answer(answer() if callable(answer) else answer), Readings(forces, LAYOUT, SIZE, noise=NOISE))
+
+
+class Beginning(Experiment):
+    """Begins as a test wants."""
+
+    answer: Any = None
+
+    def begin(self) -> Any:
+        return self.answer()
+
+    @classmethod
+    def example(cls) -> Beginning:
+        return cls(kind="beginning")
+
+
+def test_what_begin_returns_and_what_was_found_are_named_if_they_cannot_be_used() -> None:
+    def run(answer: Callable[[], Any]) -> Result:
+        return Beginning(kind="beginning", answer=answer).run(None)
+
+    with pytest.raises(InputError, match=r"begin\(\) of Beginning returned a NoneType; needed: a Course"):
+        run(lambda: None)
+    with pytest.raises(InvalidQuantity, match="a is a float; needed: Quantity"):
+        run(lambda: Course.computed(Findings("", quantities={"a": 1.0})))  # type: ignore[dict-item]
+    with pytest.raises(InvalidQuantity, match=r"of force, time has columns of the lengths \[3, 4\]"):
+        rows({"force": "N", "time": "s"}, (np.arange(3.0), np.arange(4.0)))
+
+
+def test_a_result_that_could_not_be_read_again_is_not_written() -> None:
+    """A unit that nobody knows, and lists of different lengths, were written and then refused as damage."""
+    with pytest.raises(InvalidQuantity, match="length has the unknown unit 'furlongs'"):
+        Result("made_up", Status.CONVERGED, "", {"length": Quantity(1.0, "furlongs", "")})
+    with pytest.raises(InvalidQuantity, match="history has the unknown unit"):
+        Result("made_up", Status.CONVERGED, "", units={"history": "furlongs"})
+    for value in ([[1.0, 2.0], [3.0]], "text"):
+        result = Result("made_up", Status.CONVERGED, "", {"odd": Quantity(value, "m", "")})
+        with pytest.raises(InvalidQuantity, match=r"not written, for it could not be read again: quantities.odd.value"):
+            document_text(result, "abc")
