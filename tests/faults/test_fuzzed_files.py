@@ -260,7 +260,7 @@ def test_damaged_arrays(tmp_path: Path, content: bytes, entry: int, change: list
     path.write_bytes(content)
     accepted(lambda: read_weights(path))
     accepted(lambda: read_arrays(content, "a"))
-    assert mesh_store._arrays(path) is None, "a damaged mesh counts as none"
+    assert mesh_store._stored(path) is None, "a damaged mesh counts as none"
 
 
 # Frames
