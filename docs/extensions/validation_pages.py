@@ -37,9 +37,8 @@ def validation_pages() -> dict[str, str]:
         for name, count in counts.items()
     ]
     lines = [*table(("class", "meaning"), [(label, MEANINGS[label]) for label in LABELS]), ""]
-    lines += table(
-        ("table", "what it holds", *(SHORT.get(label, label) for label in LABELS)), [*rows, ("all", "", *(str(whole[label]) for label in LABELS))]
-    )
+    heads = ("table", "what it holds", *(SHORT.get(label, label) for label in LABELS))
+    lines += table(heads, [*rows, ("all", "", *(str(whole[label]) for label in LABELS))])
     lines += ["", f"The rows stand as tactsim {kept['tactsim']} computed them by", "", "```text", *kept["command"], "```", ""]
     if missing := [f"`{name}`" for name in recorded if name not in computed]:
         lines += [f"Recorded but not computed for this page: {', '.join(missing)}.", ""]

@@ -7,14 +7,11 @@ import numpy as np
 from tactsim.fem.solvers.inertia import Inertia
 from tactsim.fem.solvers.linear import has_pardiso
 from tactsim.mechanics.models.loaded_body import LoadedBody
+from tactsim.mechanics.outcome.wrinkles import WRINKLED
 from tactsim.mechanics.paths.history_path import TimedState
 
 ROUND_OFF = 1e-9
 """Asymmetry of a tangent over its largest entry that counts as none."""
-WRINKLED = 0.72
-"""Stretch below which wrinkles as long as an element lower the energy of its quadratic displacements and linear pressures at a
-free face: incompressible blocks in plane strain get the first between 0.70 and 0.72 on grids of 8 to 32 cells, and more of them
-on finer ones. Those of the material itself come below 0.544 (Biot 1963, Applied Scientific Research A 12, 168)."""
 LARGEST = 60_000
 """Unknowns up to which a further factor costs little beside a path: 5 s of a block in space of 54 114."""
 

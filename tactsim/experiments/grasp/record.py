@@ -30,6 +30,7 @@ from tactsim.mechanics.outcome.contact_record import (
     penetration_allowed,
     solver_report,
 )
+from tactsim.mechanics.outcome.wrinkles import wrinkled
 from tactsim.mechanics.paths.history_path import TimedPath, TimedState
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Status, StepRecord
@@ -164,7 +165,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         return assumptions
 
     def warnings(self) -> list[str]:
-        """Warnings about readout, mesh, readings and volumes."""
+        """Warnings about readout, mesh, readings, free faces and volumes."""
         readout, warnings = self.experiment.readout, []
         if readout is not None and self._read is not None:
             read = readout, self._read, self.experiment.matrix.area
@@ -172,6 +173,8 @@ class GraspRecord(ContactRecord[GraspModel]):
         if self._unread:
             warnings.append(self._unread)
         warnings += [*ragged(self._sourced.block), *suction(self.readings), *uneven(self._asymmetry())]
+        closed = 2 * max(step.values["displacement"] for step in self.steps)
+        warnings += wrinkled(1 - closed / self.experiment.block.size[2])
         return [*warnings, *super().warnings()]
 
     def _asymmetry(self) -> float | None:

@@ -87,12 +87,12 @@ class JawSettings(FrozenModel):
     """Place of the middle of its face in x and y, from that of the block."""
 
     def jaw(self, side: str, size: Sequence[float]) -> Jaw:
-        """The jaw for a block of this size in m."""
+        """The jaw for a block of this size in m, so thick that no tissue that bulges beside it comes to its back."""
         width, depth = (
             given or OVERHANG * size[axis] + 2 * abs(self.offset[axis]) for axis, given in enumerate((self.width, self.depth))
         )
         posed: dict[str, Any] = {"side": side, "tilt_x": self.tilt_x, "tilt_y": self.tilt_y, "fillet": self.fillet}
-        return Jaw(width=width, depth=depth, **posed)
+        return Jaw(width=width, depth=depth, thickness=max(width, depth, size[2]), **posed)
 
     def middle(self, size: Sequence[float]) -> Array:
         """Place (2,) in m of the middle of its face on a block of this size, whose corner is the origin."""

@@ -279,6 +279,24 @@ def test_what_cannot_be_grasped_is_refused(changes, words):
         grasp(**changes)
 
 
+def test_jaws_grow_with_the_block_so_that_their_backs_are_out_of_reach():
+    narrow = {"width": 200e-3, "depth": 200e-3, "fillet": 8e-3}  # more than half of 10 mm
+    large = {"size": (400e-3, 400e-3, 300e-3), "tissue": grasp().block.tissue}
+    jaw = grasp(block=large, upper=narrow).jaw("upper")
+    assert jaw.thickness >= 300e-3, "tissue bulges beside it by less than the height of the block"
+
+
+@pytest.mark.parametrize(("closing", "warned"), [(2.7e-3, False), (2.9e-3, True)])
+def test_a_block_that_is_closed_so_far_that_elements_wrinkle_is_warned_of(closing, warned):
+    result = run(
+        block={"size": (40e-3, 40e-3, 20e-3), "tissue": {"kind": "neo_hookean", "c10": 2e3}},
+        contact={"kind": "coulomb", "friction": 0.0},
+        loading=pressed({"kind": "ramp", "to": closing, "duration": 1.0}),
+        mesh={"kind": "structured", "cells": (2, 2, 1)},
+    )
+    assert any("wrinkle" in words for words in result.warnings) is warned
+
+
 def test_a_mesh_that_does_not_fit_the_case_is_refused(tube_file):
     tube = {"shape": TUBE, "material": "artery_wall"}
     with pytest.raises(InputError, match=r"2 regions, the case has 3: the tissue and 2 inclusions"):

@@ -1,0 +1,88 @@
+"""A case with all lengths, moduli and times multiplied gives the multiplied results: no constant in m, Pa, N or s hides in it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import pytest
+from mutants import assert_kills
+from small_problems import result_of
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+TOLERANCE = 1e-9
+"""Relative: of an equilibrium, 1e-10, and what a stiff contact makes of it. 3e-13 was seen of forces."""
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What lengths, moduli and times are multiplied by: powers of two, with which every number keeps its digits."""
+
+    length: float = 1.0
+    modulus: float = 1.0
+    time: float = 1.0
+
+    @property
+    def force(self) -> float:
+        """What forces are multiplied by."""
+        return self.modulus * self.length**2
+
+
+CELL = Scale(2.0**-10, 2.0**-10, 2.0**-7)  # 10 um, 8 Pa, forces of nN
+HULL = Scale(2.0**7, 2.0**18, 2.0**10)  # 1.3 m, 2 GPa, hours
+
+
+def pressed(scale: Scale, *, relaxation_times: float | None = None, allowed: float | None = None) -> dict[str, float]:
+    """Force, its estimated error and what a ball with friction pressed into relaxing rubber and held passes, over their scales.
+
+    The first time of each piece at which a step must end is given, for by default it is no earlier than 1 us. Mutants leave the
+    ``relaxation_times`` as they were, or allow a fixed penetration in m.
+    """
+    length, time = scale.length, scale.time
+    cells = [{"length": 0.01 * length, "cells": 4}]
+    times = time if relaxation_times is None else relaxation_times
+    result = result_of(
+        dimension="axisymmetric",
+        geometry={"kind": "cylinder", "radial": cells, "axial": cells},
+        material={
+            "kind": "mooney_rivlin_2",
+            "c10": 4e3 * scale.modulus,
+            "c01": 1e3 * scale.modulus,
+            "relaxation": {"fractions": [0.3, 0.3], "times": [0.25 * times, 4.0 * times]},
+        },
+        conditions=[{"kind": "clamped", "face": "bottom"}],
+        contacts=[
+            {
+                "body": {"kind": "sphere", "radius": 0.004 * length},
+                "side": "top",
+                "face": "top",
+                "at": [0.0, 0.01 * length],
+                "z": -1e-3 * length,
+                "law": {"kind": "coulomb", "friction": 0.3},
+            }
+        ],
+        amplitude={"pieces": [{"kind": "ramp", "to": 1.0, "duration": time}, {"kind": "hold", "duration": time}]},
+        penetration_tolerance=allowed,
+        time={"tolerance": 1e-2, "per_decade": 1, "earliest": 1e-2 * time},
+        asked={"number": {"kind": "force", "face": "bottom", "component": "z"}},
+    )
+    return {
+        "force": float(result["number"].value) / scale.force,
+        "penetration": float(result["max_penetration"].value) / length,
+        "missing": float(result["penetration_force_error"].value),
+        "steps": len(result.steps),
+    }
+
+
+def test_a_case_the_size_of_a_cell_and_one_of_a_hull_are_the_same(verification_record):
+    """Mutants: relaxation times that stay, a penetration in m that stays."""
+    plain = pressed(Scale())
+
+    def check(scaled: dict[str, float]) -> None:
+        assert scaled == pytest.approx(plain, rel=TOLERANCE)
+
+    for name, scale in (("10 um and 8 Pa", CELL), ("1.3 m and 2 GPa", HULL)):
+        scaled = pressed(scale)
+        check(scaled)
+        known = {"reference": "dimensional analysis", "kind": "invariance", "mesh": "4 x 4 cells", "tolerance": TOLERANCE}
+        verification_record(f"ball held in relaxing rubber, {name}", scaled["force"], plain["force"], **known)
+    assert_kills(check, times=(pressed(CELL, relaxation_times=1.0),), penetration=(pressed(HULL, allowed=1e-7),))
