@@ -8,6 +8,9 @@ import pytest
 from mutants import assert_kills
 from small_problems import result_of
 
+from tactsim.experiments.annulus.annulus_design import AnnulusDesign
+from tactsim.experiments.threshold.catheter_tip import CatheterTip
+
 pytestmark = pytest.mark.usefixtures("one_thread")
 TOLERANCE = 1e-9
 """Relative: of an equilibrium, 1e-10, and what a stiff contact makes of it. 3e-13 was seen of forces."""
@@ -86,3 +89,62 @@ def test_a_case_the_size_of_a_cell_and_one_of_a_hull_are_the_same(verification_r
         known = {"reference": "dimensional analysis", "kind": "invariance", "mesh": "4 x 4 cells", "tolerance": TOLERANCE}
         verification_record(f"ball held in relaxing rubber, {name}", scaled["force"], plain["force"], **known)
     assert_kills(check, times=(pressed(CELL, relaxation_times=1.0),), penetration=(pressed(HULL, allowed=1e-7),))
+
+
+def designed(scale: Scale) -> dict[str, float]:
+    """The design point of an annular sensor on atrial tissue, whose moduli and times are those of the thesis."""
+    length = scale.length
+    design = AnnulusDesign.model_validate(
+        {
+            "outer_radius": 3e-3 * length,
+            "ratios": [0.1, 0.5],
+            "recesses": [0.1e-3 * length, 0.7e-3 * length],
+            "forces": [1.0 * length**2, 2.0 * length**2],
+            "times": [0.5],
+            "recommended_force": 2.0 * length**2,
+            "largest_force": 3.0 * length**2,
+            "design_point": {"ratio": 0.1, "recess": 0.7e-3 * length, "force": 1.0 * length**2, "time": 0.5},
+        }
+    ).run()
+    point = {name: float(design[f"point_{name}"].value) for name in ("displacement", "rise", "force_to_touch")}
+    return {name: value / (length**2 if name == "force_to_touch" else length) for name, value in point.items()}
+
+
+def touched(scale: Scale) -> dict[str, float]:
+    """Thresholds of the sensors of a tip that leans over three tissues; times are those of its electronics."""
+    length, modulus = scale.length, scale.modulus
+    tissues = [
+        {"name": "leaflet", "shear_modulus": 20e3 * modulus, "thickness": 2e-3 * length, "base": "slipping"},
+        {"name": "annulus", "shear_modulus": 60e3 * modulus, "thickness": 3e-3 * length},
+        {"name": "atrium", "shear_modulus": 10e3 * modulus, "thickness": 3e-3 * length},
+    ]
+    radii = {"radius": 3e-3, "outer_radius": 1e-3, "inner_radius": 0.5e-3, "recess": 0.1e-3}
+    result = CatheterTip.model_validate(
+        {
+            "surface": {"tissues": tissues, "borders": [13e-3 * length, 16e-3 * length]},
+            "ring": {"count": 4} | {name: value * length for name, value in radii.items()},
+            "place": (11e-3 * length, 2e-3 * length),
+            "tilt": 0.03,
+            "press": 1e-3 * length,
+            "speed": 1e-3 * length,
+            "trials": 1,
+        }
+    ).run()
+    pressures, forces = (result[f"threshold_{name}"].value for name in ("pressure", "force"))
+    return {f"{k}": value / modulus for k, value in enumerate(pressures)} | {
+        f"force {k}": value / scale.force for k, value in enumerate(forces)
+    }
+
+
+@pytest.mark.parametrize("scale", [CELL, HULL], ids=["cell", "hull"])
+def test_closed_forms_of_sensors_know_no_size(scale):
+    """Mutants: moduli that stay where the rest is multiplied, and forces over the lengths alone."""
+
+    def check(found: dict[str, float]) -> None:
+        assert found == pytest.approx(touched(Scale()), rel=TOLERANCE)
+
+    assert designed(scale) == pytest.approx(designed(Scale()), rel=TOLERANCE)
+    found = touched(scale)
+    check(found)
+    of_forces = {name: value / (scale.length if "force" in name else 1.0) for name, value in found.items()}
+    assert_kills(check, moduli=(touched(Scale(scale.length)) | {"0": found["0"] * scale.modulus},), lengths=(of_forces,))

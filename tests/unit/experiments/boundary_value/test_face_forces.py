@@ -92,3 +92,24 @@ def test_the_torque_on_a_face_is_that_of_its_own_load():
     assert torques["right"] == pytest.approx(10 * SIDE**3, rel=0.1)  # the arm grows as the face moves
     assert torques["bottom"] == pytest.approx(-torques["right"], rel=1e-6)
     assert torques["left"] == torques["front"] == torques["back"] == torques["top"] == 0
+
+
+@pytest.mark.parametrize("cells", [1, 4])
+def test_a_face_among_prescribed_ones_misses_the_share_of_its_edges(cells):
+    """Each corner, which bears a sixth of the traction of its cell, is shared by two faces: as the guide of problems says."""
+    spans, shear, modulus = [{"length": SIDE, "cells": cells}], 1e-3, 1e3
+    faces = ("left", "right", "bottom", "top")
+    asked = {
+        "force": {"kind": "force", "face": "top", "component": "x"},
+        "stress": {"kind": "stress", "at": (SIDE / 2, SIDE), "component": "xy"},
+    }
+    result = result_of(
+        dimension="plane_strain",
+        geometry={"kind": "block", "x": spans, "y": spans},
+        material={"kind": "neo_hookean", "c10": modulus / 2, "bulk_modulus": 1e3 * modulus},
+        conditions=[{"kind": "displacement", "face": face, "x": 0.0, "y": 0.0, "slopes": {"x": {"y": shear}}} for face in faces],
+        steps=1,
+        asked=asked,
+    )
+    assert result["stress"].value == pytest.approx(modulus * shear, rel=1e-6)
+    assert result["force"].value / (modulus * shear * SIDE) == pytest.approx(1 - 1 / (6 * cells), rel=1e-6)
