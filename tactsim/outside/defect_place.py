@@ -11,7 +11,13 @@ _PACKAGE = str(Path(__file__).resolve().parents[1])
 
 
 def unless_own(error: BaseException) -> str:
-    """What follows "please report it": the innermost line outside libraries that the error came through, if any."""
+    """What follows "please report it": where the error arose, if that is known."""
+    place = place_of(error)
+    return f", unless {place} is your own" if place else ""
+
+
+def place_of(error: BaseException) -> str:
+    """The innermost line outside libraries that an error came through: ``line 3 of my_law``; empty if it was never raised."""
     from sysconfig import get_paths  # a command without a defect starts without it
 
     libraries = ("<frozen", *(str(Path(path).resolve()) for name, path in get_paths().items() if name.endswith("lib")))
@@ -19,5 +25,5 @@ def unless_own(error: BaseException) -> str:
         name = frame.f_code.co_filename
         file = name if name.startswith("<") else str(Path(name).resolve())
         if file.startswith(_PACKAGE) or not file.startswith(libraries):
-            return f", unless line {line} of {one_line(frame.f_globals.get('__name__', file), 200)} is your own"
+            return f"line {line} of {one_line(frame.f_globals.get('__name__', file), 200)}"
     return ""
