@@ -13,7 +13,7 @@ from markdown_parts import page, table
 from tactsim.validation.endings import LABELS
 from tactsim.validation.loading import load_groups
 from tactsim.validation.pictures import PlacedPicture, parts
-from tactsim.validation.report import MEANINGS, short
+from tactsim.validation.report import MEANINGS, SHORT
 
 MOST_ROWS = 4
 """Rows that the caption of a picture tells one by one."""
@@ -38,7 +38,8 @@ def validation_pages() -> dict[str, str]:
     ]
     lines = [*table(("class", "meaning"), [(label, MEANINGS[label]) for label in LABELS]), ""]
     lines += table(
-        ("table", "what it holds", *map(short, LABELS)), [*rows, ("all", "", *(str(whole[label]) for label in LABELS))]
+        ("table", "what it holds", *(SHORT.get(label, label) for label in LABELS)),
+        [*rows, ("all", "", *(str(whole[label]) for label in LABELS))],
     )
     lines += ["", f"The rows stand as tactsim {kept['tactsim']} computed them by", "", "```text", *kept["command"], "```", ""]
     if missing := [f"`{name}`" for name in recorded if name not in computed]:
