@@ -27,6 +27,7 @@ from tactsim.cli import (
 )
 from tactsim.cli.interruption import interruptible
 from tactsim.errors import INTERRUPTED, InputError, StorageError, TactsimError
+from tactsim.outside.defect_place import unless_own
 from tactsim.outside.environment import check_environment
 from tactsim.outside.extras import missing_extra
 from tactsim.outside.library_warnings import collected_warnings
@@ -158,7 +159,7 @@ def _parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.N
 def _defect(error: Exception, debug: bool) -> int:
     """Report an error that tactsim does not raise on purpose; the exit code."""
     trace = traceback.format_exc() if debug else "run again with --debug for the details"
-    console.error(f"internal error ({type(error).__name__}: {one_line(error)}); please report it; {trace}")
+    console.error(f"internal error ({type(error).__name__}: {one_line(error)}); please report it{unless_own(error)}; {trace}")
     return TactsimError.exit_code
 
 

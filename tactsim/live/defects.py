@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from aiohttp import ClientError, WebSocketError, web
 from aiohttp.http_exceptions import HttpProcessingError
 
+from tactsim.outside.defect_place import unless_own
 from tactsim.outside.text import one_line
 
 LOGGER = logging.getLogger("tactsim.live")
@@ -31,7 +32,7 @@ OF_CLIENTS = (
 def report(error: BaseException) -> str:
     """Words for a client about a defect, which is also logged for the user."""
     LOGGER.error("%s", one_line(error), exc_info=error)
-    return f"internal error ({type(error).__name__}); please report it"
+    return f"internal error ({type(error).__name__}); please report it{unless_own(error)}"
 
 
 @contextmanager
@@ -68,7 +69,8 @@ class _Reporter(logging.Handler):
             return
         first = record.getMessage().partition("\n")[0]  # asyncio adds the source of tasks and coroutines below
         words = first if error is None else f"{type(error).__name__}: {one_line(error, 200)}"
-        line = f"warning: internal error of the page ({one_line(words, 300)}); please report it"
+        place = "" if error is None else unless_own(error)
+        line = f"warning: internal error of the page ({one_line(words, 300)}); please report it{place}"
         if line not in self._reported and len(self._reported) < MOST_REPORTED:
             self._reported.add(line)
             self._write(line)

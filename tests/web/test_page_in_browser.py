@@ -429,6 +429,27 @@ def test_a_sample_is_picked(browser: webdriver.Chrome, tmp_path: Path) -> None:
         assert all(np.isnan(value) for value in table(browser).values())
 
 
+def test_nothing_of_the_last_sample_stays_where_none_is_chosen(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    with shown(browser, str(made_up_store(tmp_path))):
+        until(lambda: "longest bar now" in words(browser, "space-words") and "true" in words(browser, "legend"))
+        until(lambda: _coloured(browser))
+        split = words(browser, "title").partition("(")[2].rstrip(")")
+        other = browser.find_element(By.CSS_SELECTOR, f"#split option:not([value='{split}']):not(:first-child)")
+        other.click()
+        browser.find_element(By.CSS_SELECTOR, "#status option[value='failed']").click()
+        until(lambda: "no sample has this split and status" in words(browser, "alerts"))
+        assert words(browser, "title") == "tactsim"
+        assert words(browser, "space-words") == ""
+        assert "true" not in words(browser, "legend")
+        assert not _coloured(browser)
+
+
+def _coloured(browser: webdriver.Chrome) -> bool:
+    """Whether bars are drawn in space: nothing else there is green or yellow."""
+    picture = imread(BytesIO(browser.find_element(By.ID, "space-canvas").screenshot_as_png))[..., :3]
+    return bool((picture[..., 1] - picture[..., 2] > 0.25).any())
+
+
 @contextmanager
 def sender(port: int, count: int, rate: float = 20.0) -> Iterator[None]:
     """A sensor of ``count`` x ``count`` taxels that sends frames, now and then a malformed one."""

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tactsim.errors import InputError, TactsimError
 from tactsim.interfaces.drawing import begin_all
+from tactsim.outside.defect_place import place_of
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
 from tactsim.results import Result
@@ -57,5 +58,5 @@ def drawn_figures(
                 except TactsimError as error:
                     warnings.append(f"{name} is left out: {error}")
         except Exception as error:  # noqa: BLE001  whatever drawing does wrong, the numbers must still be written
-            warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}")
+            warnings.append(f"not every figure could be drawn: {type(error).__name__}: {one_line(error)}; from {place_of(error)}")
     return drawn, caught.lines() + warnings

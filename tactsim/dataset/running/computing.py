@@ -17,6 +17,7 @@ from tactsim.dataset.store.arrays import DONE, FAILED
 from tactsim.dataset.store.blocks import checksum, encoded, stacked
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError
 from tactsim.experiments.recording import numbers as numbers_of
+from tactsim.outside.defect_place import place_of
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
 from tactsim.results.result import Status
@@ -95,8 +96,10 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
         _check(values, layout)
     except CaseError:
         raise  # what the sweep stores is wrong for every sample
-    except (TactsimError, ValueError, ArithmeticError, LookupError, MemoryError, RuntimeError) as error:
+    except (TactsimError, MemoryError) as error:
         return FAILED, f"{type(error).__name__}: {error}", {}
+    except (ValueError, ArithmeticError, LookupError, RuntimeError) as error:
+        return FAILED, f"{type(error).__name__}: {error}; from {place_of(error)}", {}
     warnings = "\n".join(map(one_line, result.warnings))[:LONGEST_WARNINGS]
     return DONE, result.reason, {**values, "warnings": warnings}
 

@@ -98,8 +98,10 @@ function clear() {
   taxels.place.replaceChildren();
   answer.clear();
   frame = waiting = null; inclusions = [];
-  space?.setEstimate([]);
-  space?.setInclusions([]);
+  space?.clear();
+  get("title").textContent = get("title").title = document.title = "tactsim";
+  get("space-words").textContent = "";
+  legend();
   for (const view of views) view.canvas.getContext("2d").clearRect(0, 0, view.canvas.width, view.canvas.height);
 }
 

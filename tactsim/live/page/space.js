@@ -99,6 +99,14 @@ export class Space {
     return { group, bars, rotation: jaw.rotation, base: plate };
   }
 
+  // No forces are known: the block and its jaws stay, and what was measured and estimated goes.
+  clear() {
+    if (!this.scene) return;
+    for (const jaw of this.jaws) jaw.bars.visible = false;
+    this.setInclusions([]);
+    this.setEstimate([]);
+  }
+
   setInclusions(inclusions) {
     if (!this.scene) return;
     empty(this.bodies);
@@ -160,6 +168,7 @@ export class Space {
     const { rows, columns, taxel, pitch, size, colours } = this.scene, end = frame.scales[3] || 1;
     const place = new THREE.Matrix4(), colour = new THREE.Color();
     this.jaws.forEach((jaw, side) => {
+      jaw.bars.visible = true;
       const basis = jaw.rotation, at = frame.places[side];
       jaw.group.matrix.fromArray([...basis.slice(0, 3), 0, ...basis.slice(3, 6), 0, ...basis.slice(6, 9), 0, ...at, 1]);
       jaw.group.matrixWorldNeedsUpdate = true;

@@ -24,6 +24,7 @@ from tactsim.live.session.messages import plain_json
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.scene import PageScene
 from tactsim.live.sources.watch import Watch
+from tactsim.outside.defect_place import unless_own
 from tactsim.outside.text import one_line
 
 Send = Callable[[str], Awaitable[None]]
@@ -165,7 +166,8 @@ def estimate_message(
     except TactsimError as error:
         fault = str(error)
     except Exception as error:  # noqa: BLE001  whatever an estimator does wrong, the page goes on and states it
-        fault = f"internal error of the estimator ({type(error).__name__}: {one_line(error, 200)}); please report it"
+        words = f"{type(error).__name__}: {one_line(error, 200)}"
+        fault = f"internal error of the estimator ({words}); please report it{unless_own(error)}"
     head = {"is": "estimate", "busy": False, "estimator": choice.name, "label": choice.label, "moment": moment or {}}
     return plain_json(head | {"fault": fault, "cancelled": False} | stated)
 

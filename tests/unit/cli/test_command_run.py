@@ -145,7 +145,8 @@ def test_a_figure_that_cannot_be_drawn_does_not_cost_the_numbers(
 
     monkeypatch.setattr(plotting, "figures_for", lambda result: {"good": lambda: PNG, "bad": broken})
     assert main(["run", "case.yaml"]) == 0
-    assert "warning: not every figure could be drawn: ZeroDivisionError: nothing to draw" in capsys.readouterr().out
+    line = f"line {broken.__code__.co_firstlineno + 1} of {__name__}"
+    assert f"warning: not every figure could be drawn: ZeroDivisionError: nothing to draw; from {line}" in capsys.readouterr().out
     assert os.listdir("results/case/figures") == ["good.png"]
     assert any("could be drawn" in warning for warning in read_result("results/case").result.warnings)
 

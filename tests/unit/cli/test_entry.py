@@ -91,6 +91,7 @@ def test_a_defect_is_reported_as_such(debug: bool, monkeypatch: pytest.MonkeyPat
     assert main(["schema", *(["--debug"] if debug else [])]) == 1
     error = capsys.readouterr().err
     assert error.startswith("error: internal error (RuntimeError: wheel came off); please report it")
+    assert f"line {broken.__code__.co_firstlineno + 1} of {__name__} is your own" in error
     assert ("Traceback" in error) == debug
 
 
