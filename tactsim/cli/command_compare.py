@@ -23,8 +23,8 @@ warnings. Of arrays, such as the forces of taxels, it gives the largest value an
 difference from the first result; what differs by round-off only is the same. With --out a
 folder is written, in the place of an earlier comparison: comparison.csv and comparison.md with
 every number, comparison.png (or .svg, .pdf: --figures) with a curve for each result and, of grasps,
-a map of their taxels. A folder that holds several results, such as that of tactsim run CASE1 CASE2 --out DIR, stands for
-all of them.
+a map of their taxels. A folder that holds several results, such as that of
+tactsim run CASE1 CASE2 --out DIR, stands for all of them.
 """
 EXAMPLES = """\
 examples:

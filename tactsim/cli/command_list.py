@@ -40,12 +40,16 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 def run(arguments: argparse.Namespace) -> int:
     """Exit code of the whole command."""
     for section in [arguments.what] if arguments.what else SECTIONS:
-        table = [(name, one_line(about, 200)) for name, about in SECTIONS[section]()]
         if arguments.what is None:
-            console.out("\n".join([f"{section}:", *aligned(table, left=2, indent="  "), ""]))
+            console.out("\n".join([f"{section}:", *listed(section, indent="  "), ""]))
         else:
-            console.out("\n".join(aligned(table, left=2)))
+            console.out("\n".join(listed(section)))
     return 0
+
+
+def listed(section: str, *, indent: str = "") -> list[str]:
+    """Lines of a section, one for each name."""
+    return aligned([(name, one_line(about, 200)) for name, about in SECTIONS[section]()], left=2, indent=indent)
 
 
 def _titled(schema: str) -> Callable[[], Lines]:

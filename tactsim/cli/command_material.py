@@ -74,7 +74,8 @@ def run(arguments: argparse.Namespace) -> int:
     if arguments.material is None:
         if arguments.save is not None:
             raise InputError("--save needs a material to draw")
-        return command_list.run(argparse.Namespace(what="materials"))
+        console.out("\n".join(command_list.listed("materials")))
+        return 0
     return _report(arguments)
 
 

@@ -16,8 +16,10 @@ PRESSURES = np.array([0.0, 1e3, 1e5])
 """In Pa."""
 
 
-def check_body(body: RigidBody, points: Array) -> None:
-    """Refuse a body whose signed distance at points (d, n) in m has other shapes, or falls along its normal at most of them.
+def checked_normals(body: RigidBody, points: Array) -> Array:
+    """Normals (d, n) of a body at points (d, n) in m.
+
+    Refuses one whose signed distance there has other shapes, or falls along its normal at most of them.
 
     Raises
     ------
@@ -36,6 +38,7 @@ def check_body(body: RigidBody, points: Array) -> None:
     farther = body.signed_distance(points + step * normal)[0]
     if np.median(farther - distance) < step / 2:
         raise InvalidQuantity(f"{name} does not grow along its normal, which must be the unit vector out of the body")
+    return np.asarray(normal)
 
 
 def check_law(law: ContactLaw) -> None:

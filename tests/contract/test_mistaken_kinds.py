@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from made_grasps import LAYOUT, NOISE, SIZE, plain_forces
 
-from tactsim.contact.checks import check_body, check_law
+from tactsim.contact.checks import check_law, checked_normals
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.interfaces import ContactLaw, Experiment, Inclusion, Material, RigidBody
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
@@ -95,11 +95,11 @@ def upward(x: Array, sign: float = 1.0) -> tuple[Array, Array, Array]:
 
 def test_a_body_of_other_shapes_or_with_its_normal_inwards_is_refused() -> None:
     good = Leaning(kind="leaning", answer=lambda x: upward(x, -1.0))
-    check_body(good, POINTS)
+    checked_normals(good, POINTS)
     with pytest.raises(InvalidQuantity, match="signed_distance of Leaning does not grow along its normal"):
-        check_body(Leaning(kind="leaning", answer=upward), POINTS)
+        checked_normals(Leaning(kind="leaning", answer=upward), POINTS)
     with pytest.raises(InvalidQuantity, match=r"of the shapes \(3,\), \(2, 3\) and \(2, 2, 3\) at points \(2, 3\); it returned"):
-        check_body(Leaning(kind="leaning", answer=lambda x: (x[-1].sum(), np.zeros(3), 0.0)), POINTS)
+        checked_normals(Leaning(kind="leaning", answer=lambda x: (x[-1].sum(), np.zeros(3), 0.0)), POINTS)
 
 
 class Odd(ContactLaw):

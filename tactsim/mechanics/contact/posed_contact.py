@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.contact.checks import check_body, check_law
+from tactsim.contact.checks import check_law, checked_normals
 from tactsim.contact.traction import ContactIterate, ContactPair, ContactState, ContactTraction, at_points
 from tactsim.fem.assembly.surface import SurfaceAssembly
 
@@ -43,9 +43,9 @@ class PosedContact:
             If the body or the law returns what cannot be used.
         """
         points = reference - place[:, None]
-        check_body(pair.body, points)
+        normals = checked_normals(pair.body, points)
         check_law(pair.law)
-        return cls(surface, reference, pair, place, ContactState.untouched(points, pair.body.signed_distance(points)[1]))
+        return cls(surface, reference, pair, place, ContactState.untouched(points, normals))
 
     def of_part(self, surface: SurfaceAssembly, points: Array) -> PosedContact:
         """The same pair on a part of the surface, of which the ``points`` (m,) are these; how its forces grew is left behind."""
