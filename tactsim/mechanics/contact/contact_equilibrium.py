@@ -16,7 +16,7 @@ from tactsim.fem.equilibrium.balance import Equilibrium, point_displacements
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
-from tactsim.mechanics.contact.contact_steps import accepted, augmented, begun_from, expected, grown, held
+from tactsim.mechanics.contact.contact_steps import accepted, approached, augmented, begun_from, expected, grown, held
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.contact.snap_through import after_snap
 
@@ -104,6 +104,11 @@ def contact_equilibrium(
     Collapsed
         If so, and an element of ``state`` is nearly inside out already.
     """
+    if action.force is not None:
+        u = problem.body.space.split(state.unknowns)[0]
+        moves = [contact.surface.points.interpolate(u) for contact in state.contacts]
+        contacts, distance = approached(state.contacts, moves, action.directions)
+        state, load = replace(state, load=state.load + distance, contacts=contacts), load + distance
     try:
         return _equilibrium(problem, state, load, guess, action)
     except TooShort:

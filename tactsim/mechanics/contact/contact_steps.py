@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -10,6 +11,42 @@ from tactsim.array import Array
 from tactsim.contact.traction import ContactIterate, ContactState, ContactTraction
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.mechanics.contact.posed_contact import PosedContact
+
+TOUCH = 1e-15
+"""Gap at touch over the size of what is touched: round-off."""
+MOST_APPROACHES = 100
+"""Steps of a free approach, each as long as the gap; where it ends earlier the rest counts as slip."""
+
+
+def approached(
+    contacts: Sequence[PosedContact], displacements: Sequence[Array], directions: Sequence[Array]
+) -> tuple[tuple[PosedContact, ...], float]:
+    """Contacts of which none presses, moved on along their unit vectors until one touches, and by how many m.
+
+    Why: what a body covers before it touches is no slip. On a slope its part along the surface would be taken for one, and the
+    friction against it outweigh the first small force of a prescribed ramp, so that the point opens and closes in turns.
+    """
+    if any(contact.state.pressure.any() for contact in contacts):
+        return tuple(contacts), 0.0
+    bodies = [
+        (contact.pair.body, contact.reference + displacement - contact.place[:, None], direction[:, None])
+        for contact, displacement, direction in zip(contacts, displacements, directions, strict=True)
+    ]
+    size = max(float(np.abs(points).max()) for _, points, _ in bodies)
+    distance = 0.0
+    for _ in range(MOST_APPROACHES):
+        gap = min(float(body.signed_distance(points - distance * along)[0].min()) for body, points, along in bodies)
+        if gap <= TOUCH * size:
+            break
+        distance += gap
+    if distance == 0.0:
+        return tuple(contacts), 0.0
+    moved = []
+    for contact, (body, points, along) in zip(contacts, bodies, strict=True):
+        now = points - distance * along
+        state = ContactState.untouched(now, body.signed_distance(now)[1])
+        moved.append(replace(contact, place=contact.place + distance * along[:, 0], state=state, growth=None, grown_over=0.0))
+    return tuple(moved), distance
 
 
 def expected(contact: PosedContact, distance: float) -> PosedContact:

@@ -9,6 +9,7 @@ from scenes import unmarked_figures
 
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
+from tactsim.contact.punch import Punch
 from tactsim.contact.sphere import Sphere
 from tactsim.errors import CaseError
 from tactsim.experiments.indentation.graded_section import MeshSettings
@@ -214,3 +215,19 @@ def test_under_a_force_the_contact_of_tissue_that_relaxes_becomes_softer_where_s
     stiff = 129.907e-6  # the displacement by the contact that stays as stiff as the jump asked
     assert float(result["displacement"].value) == pytest.approx(stiff, rel=1e-3)
     assert 1e-9 < float(result["max_penetration"].value) < thin().tolerance, "a contact that stays stiff leaves 0.05 nm"
+
+
+@pytest.mark.parametrize("fillet", [0.7e-3, 1.6e-3])
+def test_a_force_begins_on_a_slope_with_friction(fillet):
+    """What the body covers before it touches is no slip: as one it outweighed the first force, and the point opened and closed
+    in turns however short the step."""
+    skin = Layer(thickness=1e-3, material=NeoHookean(c10=30e3))
+    slope = Specimen(material=ELASTIC, thickness=8e-3, radius=7e-3, layers=(skin,), surface="concave", surface_radius=25e-3)
+    pressed = thin(
+        specimen=slope,
+        body=Punch(radius=3e-3, fillet=fillet),
+        contact=Coulomb(friction=1.0),
+        loading=forced({"kind": "ramp", "to": 20e-3, "duration": 1.0}),
+        mesh=MeshSettings(finest=0.45e-3, growth=1.5),
+    )
+    assert history(pressed.run(), "reaction_force")[-1] == pytest.approx(20e-3, rel=1e-6)
