@@ -16,7 +16,8 @@ from tactsim.fem.equilibrium.balance import Equilibrium, point_displacements
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
-from tactsim.mechanics.contact.contact_steps import accepted, approached, augmented, begun_from, expected, grown, held
+from tactsim.mechanics.contact.contact_steps import accepted, approached, augmented, begun_from, expected, grown, held, moved_on
+from tactsim.mechanics.contact.first_force import state_near
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.contact.snap_through import after_snap
 
@@ -105,9 +106,7 @@ def contact_equilibrium(
         If so, and an element of ``state`` is nearly inside out already.
     """
     if action.force is not None:
-        u = problem.body.space.split(state.unknowns)[0]
-        moves = [contact.surface.points.interpolate(u) for contact in state.contacts]
-        contacts, distance = approached(state.contacts, moves, action.directions)
+        contacts, distance = approached(state.contacts, problem.body.space.split(state.unknowns)[0], action.directions)
         state, load = replace(state, load=state.load + distance, contacts=contacts), load + distance
     try:
         return _equilibrium(problem, state, load, guess, action)
@@ -118,8 +117,9 @@ def contact_equilibrium(
             raise Collapsed(
                 f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
-        if reached := _softened(problem, state, load, guess, action) or _approached(problem, state, load, guess, action):
-            return reached
+        for another_way in (_softened, _approached, _by_displacement):
+            if reached := another_way(problem, state, load, guess, action):
+                return reached
         if not 0 < load - state.load <= SNAP_STEP * load:
             raise
     return _after_snap(problem, state, load, action)
@@ -159,6 +159,23 @@ def _approached(
     except ConvergenceError:
         return None
     return replace(reached, iterations=iterations)
+
+
+def _by_displacement(
+    problem: Problem, state: ContactEquilibrium, load: float, guess: Array, action: Action
+) -> ContactEquilibrium | None:
+    """The first state under a force, found through those of displacements; None if it is not, or something presses before."""
+    if action.force is None or any(contact.state.pressure.any() for contact in state.contacts):
+        return None
+
+    def moved(distance: float, unknowns: Array) -> ContactEquilibrium:
+        return _equilibrium(problem, state, state.load + distance, unknowns, replace(action, force=None))
+
+    try:
+        near = state_near(action.force, action.directions, float(np.ptp(problem.body.space.nodes, axis=0).max()), moved, guess)
+        return None if near is None else _equilibrium(problem, state, near.load, near.unknowns, action, from_guess=True)
+    except ConvergenceError:
+        return None
 
 
 def _after_snap(problem: Problem, state: ContactEquilibrium, load: float, action: Action) -> ContactEquilibrium:
@@ -203,14 +220,14 @@ def _equilibrium(
     coarse = COARSE if regularisation.augments and any(contact.pair.has_friction for contact in before) else 0.0
     excess, overshot = np.inf, False
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
-        contacts = _moved(before, load - state.load, action.directions, regularisation)
+        contacts = moved_on(before, load - state.load, action.directions, regularisation)
         try:
             solved = _solved(problem, guess, contacts, action, from_guess=from_guess, coarse=coarse)
         except ConvergenceError as error:
             error.solutions += iterations
             raise
         load += solved.rigid_displacement
-        contacts = _moved(before, load - state.load, action.directions, regularisation)
+        contacts = moved_on(before, load - state.load, action.directions, regularisation)
         iterations += solved.iterations
         if solved.iterations == 0:
             coarse *= SHARPER
@@ -229,8 +246,7 @@ def _equilibrium(
             return ContactEquilibrium(
                 load, solved.unknowns, iterations, solved.history[-1], grown_contacts, regularisation, solved.kinematics
             )
-        if excess <= 1:
-            coarse = 0.0
+        coarse = 0.0 if excess <= 1 else coarse
         if regularisation.augments:
             share = AVERAGED if overshot and attempt >= UNAVERAGED else 1.0
             before = tuple(augmented(old, result, share) for old, result in zip(before, results, strict=True))
@@ -282,13 +298,3 @@ def _solved(
         guess, rigid_displacement = between.unknowns, between.rigid_displacement
         begun = warm_started()
     raise AssertionError("the last round returns or raises")
-
-
-def _moved(
-    contacts: Sequence[PosedContact], distance: float, directions: Sequence[Array], regularisation: Regularisation
-) -> list[PosedContact]:
-    """The contacts with their bodies moved on by ``distance`` in m."""
-    return [
-        replace(contact, place=contact.place + distance * direction, pair=regularisation.applied(contact.pair, contact.state))
-        for contact, direction in zip(contacts, directions, strict=True)
-    ]

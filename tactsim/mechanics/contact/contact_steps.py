@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactIterate, ContactState, ContactTraction
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.mechanics.contact.posed_contact import PosedContact
@@ -19,9 +20,11 @@ MOST_APPROACHES = 100
 
 
 def approached(
-    contacts: Sequence[PosedContact], displacements: Sequence[Array], directions: Sequence[Array]
+    contacts: Sequence[PosedContact], nodes: Array, directions: Sequence[Array]
 ) -> tuple[tuple[PosedContact, ...], float]:
     """Contacts of which none presses, moved on along their unit vectors until one touches, and by how many m.
+
+    ``nodes`` (n, d) are the displacements of the body's nodes in m.
 
     Why: what a body covers before it touches is no slip. On a slope its part along the surface would be taken for one, and the
     friction against it outweigh the first small force of a prescribed ramp, so that the point opens and closes in turns.
@@ -29,8 +32,8 @@ def approached(
     if any(contact.state.pressure.any() for contact in contacts):
         return tuple(contacts), 0.0
     bodies = [
-        (contact.pair.body, contact.reference + displacement - contact.place[:, None], direction[:, None])
-        for contact, displacement, direction in zip(contacts, displacements, directions, strict=True)
+        (contact.pair.body, contact.reference + contact.surface.points.interpolate(nodes) - contact.place[:, None], e[:, None])
+        for contact, e in zip(contacts, directions, strict=True)
     ]
     size = max(float(np.abs(points).max()) for _, points, _ in bodies)
     distance = 0.0
@@ -106,3 +109,13 @@ def transferred(contact: PosedContact, surface: SurfaceAssembly, reference: Arra
     traction = tangential - np.einsum("in,in->n", tangential, normals) * normals
     state = ContactState(pressure, traction, points, normals, creep=creep)
     return replace(contact, surface=surface, reference=reference, state=state)
+
+
+def moved_on(
+    contacts: Sequence[PosedContact], distance: float, directions: Sequence[Array], regularisation: Regularisation
+) -> list[PosedContact]:
+    """The contacts with their bodies moved on by ``distance`` in m."""
+    return [
+        replace(contact, place=contact.place + distance * direction, pair=regularisation.applied(contact.pair, contact.state))
+        for contact, direction in zip(contacts, directions, strict=True)
+    ]

@@ -178,6 +178,21 @@ def test_a_pulse_is_felt_under_a_closing(tube_file):
     assert "lumen 1: as given, 500 Pa to 2 kPa at 1 Hz, a raised cosine" in result.assumptions
 
 
+def test_a_small_force_begins_at_the_edges_under_leaning_jaws():
+    """Nothing holds the block before: under a force the first iterates of Newton threw it away."""
+    leaning = run(
+        block={"size": (44e-3, 32e-3, 28e-3), "tissue": SOFT},
+        contact={"kind": "coulomb", "friction": 0.3},
+        upper={"tilt_x": "1.44 deg"},
+        lower={"tilt_x": "-1.22 deg"},
+        mesh={"kind": "structured", "cells": (3, 3, 2)},
+        loading=pressed({"kind": "ramp", "to": 0.1, "duration": 1.0}, control="force"),
+    )
+    forces = values(leaning)
+    assert forces["jaw_force_upper"][2] == pytest.approx(0.1, rel=1e-6)
+    assert np.add(forces["jaw_force_upper"], forces["jaw_force_lower"]) == pytest.approx(0.0, abs=1e-6)
+
+
 def test_forces_that_do_not_add_up_are_refused():
     parts = TaxelForces(np.ones((3, 2, 2)), np.zeros(3), np.ones(3))
     check_sums(JawReading(parts, np.full(3, 5.0)), np.eye(3), "upper", 0.0)
