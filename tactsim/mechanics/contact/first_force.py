@@ -66,10 +66,10 @@ def state_near(
             displacement *= factor
             continue
         together = zip(reached.contacts, directions, strict=True)
-        found = sum(float(e @ contact.surface.total(contact.state.traction)) for contact, e in together)
-        if abs(found - force) <= NEAR * force:
+        pressed = sum(float(e @ contact.surface.total(contact.state.traction)) for contact, e in together)
+        if abs(pressed - force) <= NEAR * force:
             return reached
-        if found > 0:
-            factor, guess = float(np.clip((force / found) ** POWER, NEARER, FARTHER)), reached.unknowns
+        if pressed > 0:
+            factor, guess = float(np.clip((force / pressed) ** POWER, NEARER, FARTHER)), reached.unknowns
         displacement *= factor
     return None
