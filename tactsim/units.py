@@ -44,7 +44,19 @@ DECIMAL_POINT = "decimals begin with a point, not a comma"
 @lru_cache(maxsize=1024)
 def is_unit(text: str) -> bool:
     """Whether ``text`` is a unit that numbers can be shown in; "" and "1" are that of a plain number."""
-    return text in ("", "1") or (_UNIT.fullmatch(text) is not None and is_known(text))
+    return text in ("", "1") or (_UNIT.fullmatch(text) is not None and is_known(text, tuple(re.findall(_WORD, text))))
+
+
+def check_unit(what: str, unit: Any) -> None:
+    """Refuses a unit in which nothing can be reported; ``what`` begins the message.
+
+    Raises
+    ------
+    InvalidQuantity
+        If it is no text, or unknown.
+    """
+    if not isinstance(unit, str) or not is_unit(unit):
+        raise InvalidQuantity(f"{what}: {shown(unit)} is no unit that is known; expected text such as 'N' or '1'")
 
 
 @lru_cache(maxsize=1024)

@@ -7,10 +7,10 @@ from typing import ClassVar, Literal
 
 import pytest
 
-from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime
+from tactsim.errors import Collapsed, ConvergenceError, InputError, InvalidQuantity, OutOfMemory, OutOfTime
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import NO_MEMORY, Course, Findings, returned_by, run_within_another, timed
-from tactsim.registry import forget
+from tactsim.registry import forget, kinds
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, StepRecord, rows
 
@@ -173,3 +173,22 @@ def test_times_of_parts() -> None:
     with pytest.raises(ValueError, match="lost"), timed(timing, "other"):
         raise ValueError("lost")
     assert list(timing) == ["part"]
+
+
+def test_an_unknown_unit_of_a_history_is_refused_as_the_class_is_defined() -> None:
+    with pytest.raises(InvalidQuantity, match=r"Weighed\.history_units: force: 'parrot' is no unit that is known"):
+
+        class Weighed(Experiment):
+            """Its force has no unit."""
+
+            kind: Literal["weighed"] = "weighed"
+            history_units: ClassVar[dict[str, str]] = {"displacement": "mm", "force": "parrot"}
+
+            def begin(self) -> Course:
+                return Course.computed(Findings("weighed"))
+
+            @classmethod
+            def example(cls) -> Weighed:
+                return cls()
+
+    assert "weighed" not in kinds(Experiment)
