@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any, ClassVar
 
+from tactsim.errors import InvalidQuantity
 from tactsim.kind import CaseKind
 from tactsim.units import check_unit
 
@@ -18,6 +19,9 @@ class KindWithHistory(CaseKind):
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
         units: Any = cls.history_units
-        for name, unit in units.items() if isinstance(units, Mapping) else ():  # a property has those of its instances
-            check_unit(f"{cls.__name__}.history_units: {name}", unit)
+        if not isinstance(units, property):  # which has those of its instances
+            if not isinstance(units, Mapping):
+                raise InvalidQuantity(f"{cls.__name__}.history_units is a {type(units).__name__}; needed: a unit by each name")
+            for name, unit in units.items():
+                check_unit(f"{cls.__name__}.history_units: {name}", unit)
         super().__pydantic_init_subclass__(**options)
