@@ -38,6 +38,8 @@ _UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:
 
 LONGEST_COUNT = 1e9
 """Whole numbers below it are written with all their digits."""
+DASHES = ("\u2212", "\u2013")
+"""The minus sign and the dash that papers and web pages have before a negative number."""
 DECIMAL_POINT = "decimals begin with a point, not a comma"
 
 
@@ -86,9 +88,10 @@ def parse_quantity(text: str, unit: str) -> float:
         hint = f" (is it {powers!r}?)" if powers != given_unit and is_unit(powers) else ""
         return InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}{hint}; {expected()}")
 
-    parts = _QUANTITY.fullmatch(text.strip())
+    parts = _QUANTITY.fullmatch(re.sub(r"\s", " ", text.strip()))  # papers and web pages have spaces that do not break
     if parts is None or (parts["unit"] or "").startswith(","):
         point = DECIMAL_POINT if re.match(r"\s*[-+]?\d*,\d", text) else expected()
+        point = "a minus is a hyphen, '-'" if text.lstrip()[:1] in DASHES else point
         raise InvalidQuantity(f"{shown(text)} is not a quantity; {point}")
     value, given_unit = float(parts["number"]), parts["unit"]
     if not math.isfinite(value):

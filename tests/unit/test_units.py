@@ -52,6 +52,8 @@ def test_text_is_read_in_any_unit_of_the_dimension(text: str, unit: str, value: 
         ("3 mm2", r"unknown unit 'mm2' \(is it 'mm\^2'\?\)"),
         ("3 mx2", "unknown unit 'mx2';"),
         ("1,5 mm", "decimals begin with a point, not a comma"),
+        ("\u22125 mm", "a minus is a hyphen, '-'"),
+        ("\u20135 mm", "a minus is a hyphen, '-'"),
         ("1_0 m", "has an unknown unit"),
         ("٣ m", "is not a quantity"),
         ("3 m**9**9**9**9", "has an unknown unit"),
@@ -223,3 +225,9 @@ def test_every_word_that_is_known_without_pint_is_known_to_it():
 def test_a_unit_in_which_nothing_can_be_reported_is_refused_with_its_place(unit):
     with pytest.raises(InvalidQuantity, match=f"^Weighing: {unit!r} is no unit that is known; expected text such as 'N' or '1'$"):
         check_unit("Weighing", unit)
+
+
+@pytest.mark.parametrize("space", ["\u00a0", "\u202f", "\u2009"])
+def test_a_space_of_a_paper_or_a_web_page_is_a_space(space):
+    assert parse_quantity(f"9.08{space}mN", "N") == parse_quantity("9.08 mN", "N")
+    assert parse_quantity(f"3 Pa{space}s", "Pa*s") == 3.0
