@@ -29,6 +29,14 @@ def mean_ratio(corners: Array, simplices: Array) -> Array:
     return 3 * np.sign(determinant) * np.abs(determinant) ** (2 / 3) / (map_**2).sum(axis=(1, 2))
 
 
+def unstretched_ratio(corners: Array, simplices: Array) -> Array:
+    """Mean ratio of tetrahedra (E, 4) in coordinates in which each is as long along every axis."""
+    own = corners[simplices]
+    length = np.ptp(own, axis=1)
+    apart = own / np.where(length > 0, length, 1.0)[:, None]
+    return mean_ratio(apart.reshape(-1, 3), np.arange(4 * len(own)).reshape(-1, 4))
+
+
 def shape_gradients(barycentric: Array) -> Array:
     """Gradients (Q, 10, 3) of the quadratic functions on the reference tetrahedron at barycentric coordinates (Q, 4)."""
     slope = np.vstack([-np.ones(3), np.eye(3)])

@@ -5,11 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from tactsim.errors import ConvergenceError
+from tactsim.experiments.grasp.drawn_edges import following
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.any_block_source import AnySource, AutomaticSource
 from tactsim.mechanics.models.block_model import GraspModel
-from tactsim.mechanics.models.block_source import SourcedBlock, TetrahedraSource
+from tactsim.mechanics.models.block_source import GradedSource, SourcedBlock, TetrahedraSource
 
 
 def grasp_mesh(experiment: GraspSetup) -> SourcedBlock:
@@ -38,6 +39,8 @@ def _sourced(experiment: GraspSetup, source: AnySource) -> SourcedBlock:
     centred = not any(experiment.upper.offset + experiment.lower.offset)
     if isinstance(source, TetrahedraSource) and source.jaw is None and centred and len(widths) == 1 and flats:
         source = source.model_copy(update={"jaw": widths.pop()})
+    if isinstance(source, GradedSource):
+        source = following(source, experiment)
     return source.sourced(size, shapes, flats)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from tactsim.contact.penalty import Augmentation
+from tactsim.experiments.grasp.drawn_edges import SOFTNESS_SHARE, drawn_radius
 from tactsim.experiments.grasp.lumen_pressure import lumen_history
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.assembly.pressure import FollowerPressure
@@ -53,6 +54,7 @@ def regularisation(experiment: GraspSetup) -> Augmentation:
     """How stiff the contact is."""
     softest = shear_relaxation(experiment.block.tissue).instantaneous_modulus
     softness = min(SOFTNESS * experiment.tolerance, SOFTNESS_OF_HEIGHT * experiment.block.size[2])
+    softness = min(softness, max(experiment.tolerance, SOFTNESS_SHARE * drawn_radius(experiment)))
     return Augmentation(
         experiment.tolerance, softest, switch_length=SWITCH_OF_HEIGHT * experiment.block.size[2], softness=softness
     )

@@ -146,7 +146,7 @@ class GradedSource(SizedSource):
     edge_size: Positive[Length] | None = None
     """Thickness of cells at the faces, from which they grow at once; by default 1.6 mm, or 0.08 of the least side of the block
     and of the jaws' flats if that is less. Where a jaw is smaller than the block, they are three quarters as thick, and thin also
-    on both sides of its edges."""
+    on both sides of its edges; by default at most half as thick as these are round where they close by more than their radius."""
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0
     """By how much a cell is thicker than the one before it, nearer to a face, over that one's thickness."""
 

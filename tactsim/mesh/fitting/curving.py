@@ -20,14 +20,19 @@ from tactsim.mesh.fitting.layers import Layers
 from tactsim.mesh.fitting.smoothing import smoothed
 from tactsim.mesh.fitting.wedges import side_patches, without_wedges
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh, row_numbers
-from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes
+from tactsim.mesh.quality import jacobian_ratio, mean_ratio, region_volumes, unstretched_ratio
 
 LEAST_CURVATURE = 0.2
 """Ratio of the smallest to the greatest Jacobian below which an element counts as nearly inverted."""
 SMALLEST_SHARE = 0.25
 """Fraction of the displacement onto its surface below which a mid-node returns to the midpoint of its edge."""
-LEAST_QUALITY = 0.02
-"""Mean ratio below which a mesh is refused."""
+LEAST_QUALITY, LEAST_STRETCHED = 0.02, 0.002
+"""Mean ratios below which a mesh is refused: in general, and of tetrahedra that are only stretched along the axes.
+
+Why the second: cells that are thin in two directions at the edge of a flat and as long as elsewhere along it are meant to be so,
+and cut out of bricks they keep the largest angle that interpolation asks of them (Apel 1999, as in `graded.block`)."""
+LEAST_UNSTRETCHED = 0.3
+"""Mean ratio above which a tetrahedron is well shaped apart from such a stretch; one of six of a brick has 0.76."""
 
 
 def fitted(
@@ -77,12 +82,22 @@ def fitted(
         constraints = replace(constraints, held=np.asarray(constraints.on[:, len(FACES) :].any(axis=1)))
     if smooth:
         corners = smoothed(corners, simplices, constraints.directions, constraints.restored)
-    ratios = mean_ratio(corners, simplices)
-    if ratios.min() < LEAST_QUALITY:
-        raise ConvergenceError(f"the worst tetrahedron has a mean ratio of {ratios.min():.2g}; allowed: {LEAST_QUALITY}")
+    _check_shapes(corners, simplices)
     mesh, straightened = curved(quadratic_mesh(corners, simplices, labels), walls, constraints, layers)
     seconds = time.perf_counter() - started
     return assembled(mesh, surfaces, inclusions, key=key, seconds=seconds, straightened=straightened, part=part)
+
+
+def _check_shapes(corners: Array, simplices: Array) -> None:
+    """Refuse tetrahedra (E, 4) that are flat, other than by a stretch along the axes."""
+    ratios = mean_ratio(corners, simplices)
+    flat = np.flatnonzero(ratios < LEAST_QUALITY)
+    stretched = flat[unstretched_ratio(corners, simplices[flat]) > LEAST_UNSTRETCHED]
+    allowed = np.full(len(ratios), LEAST_QUALITY)
+    allowed[stretched] = LEAST_STRETCHED
+    worst = int(np.argmin(ratios / allowed))
+    if ratios[worst] < allowed[worst]:
+        raise ConvergenceError(f"the worst tetrahedron has a mean ratio of {ratios[worst]:.2g}; allowed: {allowed[worst]}")
 
 
 def assembled(

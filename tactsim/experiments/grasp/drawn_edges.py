@@ -1,0 +1,73 @@
+"""Edges of jaws around which a closing draws the tissue: what they ask of cells and contact there.
+
+Tissue follows a jaw that is smaller than the block around its rounded edge, once it is closed by more than the radius. A cell
+that is longer than the radius cannot: its surface touches the edge at a point or two, which open and close in turns from one
+augmentation of the contact to the next. With cells of half the radius, and a contact that gives way by a small part of it, it
+follows.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.mechanics.models.block_source import GradedSource
+from tactsim.mesh.graded.beside_jaws import THINNER
+
+CELL_SHARE = 0.5
+"""Thickness of cells at such an edge over its radius, at most.
+
+Jaws of 30 mm on a block of 60 x 60 x 30 mm of ICF, edges of 1 mm, closed by 2.5 mm at friction 0.2: with cells as long as the
+edge's radius it ends at 1.9 mm; of 0.7 times the radius it takes 155 s for 6.395 N, of half of it 11 s for 6.384 N, of a third
+64 s for 6.378 N."""
+LEAST_OF_USUAL = 0.2
+"""Thickness of such cells over the usual one, at least: sharper edges are left as they are.
+
+Why: the block above needs the cells with edges of 0.5 mm too, a fifth as thick as usual. On a block of 40 x 40 x 20 mm edges
+of 0.3 and 0.1 mm converge without them, in 6 to 18 s for a closing of 1.6 mm; with them 0.3 mm takes 45 s, 0.1 mm has no end."""
+SOFTNESS_SHARE = 0.03
+"""Penetration that the contact would have without multipliers, over the radius, at most: with 0.15 the augmentations there
+overshoot (the case above with cells of half the radius takes 101 s instead of 18 s), and at edges of 0.5 mm they find no end."""
+
+
+def drawn_radius(experiment: GraspSetup) -> float:
+    """Least radius in m of the rounded edges of jaws around which the closing draws the tissue, and cells can follow it; infinite
+    if there is none."""
+    size, closing = np.array(experiment.block.size[:2]), _closing(experiment)
+    least = LEAST_OF_USUAL / CELL_SHARE * THINNER * _usual_thickness(experiment)
+    radii = [
+        experiment.jaw(side).fillet
+        for side, (low, high) in zip(JAWS, experiment.flats, strict=False)
+        if (low > 0).any() or (high < size).any()
+    ]
+    return min((radius for radius in radii if least <= radius < closing), default=math.inf)
+
+
+def _usual_thickness(experiment: GraspSetup) -> float:
+    """Of graded cells at the faces in m, where neither the case nor an edge says another."""
+    return GradedSource().settings(experiment.block.size, experiment.flats).edge_size or 0.0
+
+
+def _closing(experiment: GraspSetup) -> float:
+    """Bound of the closing of each jaw in m: the prescribed one, or that of a relaxed column as wide as the smaller flat under
+    the force; the tissue around it holds it back."""
+    largest = experiment.loading.largest_displacement
+    if largest is not None or not experiment.flats:
+        return largest or 0.0
+    modulus = 3 * shear_relaxation(experiment.block.tissue).equilibrium_modulus
+    area = min(float(np.prod(np.ptp(flat, axis=0))) for flat in experiment.flats)
+    strain = experiment.loading.least_and_most()[1] / (modulus * area) if modulus * area > 0 else math.inf
+    return strain * experiment.block.size[2] / 2
+
+
+def following(source: GradedSource, experiment: GraspSetup) -> GradedSource:
+    """The cells, so thin at the edges of jaws that they follow these, unless the case says how thin they are."""
+    wanted = CELL_SHARE / THINNER * drawn_radius(experiment)
+    usual = source.settings(experiment.block.size, experiment.flats).edge_size
+    if source.edge_size is not None or usual is None or usual <= wanted:
+        return source
+    return source.model_copy(update={"edge_size": wanted})
