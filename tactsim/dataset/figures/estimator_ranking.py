@@ -28,7 +28,7 @@ BIN_SHARE, NOISE_APART = 0.5, 0.16
 """Part of a bin, and of a multiple of the noise, over which estimators stand beside each other, so that their intervals do not
 cover one another."""
 NOMINAL = (0.85, 0.95)
-"""Band in which the coverage of 90 % regions should lie: the plan of the display."""
+"""Band that is drawn behind the coverage: what a region that should hold 90 % of the centres may hold."""
 
 
 @dataclass(frozen=True)
