@@ -9,10 +9,12 @@ import numpy as np
 import pytest
 
 import tactsim as ts
+from tactsim.experiments.switch_probe.probe_curve import CHAPTER_5
 
 ROOT = Path(__file__).parents[2]
 sys.path.insert(0, str(ROOT / "benchmarks"))
-import recorded_signals  # noqa: E402  a script beside the package
+import probe_curve  # noqa: E402  a script beside the package
+import recorded_signals  # noqa: E402  another
 
 PART = 1e-3
 """Largest difference of a recorded force from a remade one, over the largest: steps that another machine takes elsewhere."""
@@ -44,3 +46,31 @@ def test_the_recorded_signals_are_what_the_run_gives(tmp_path: Path) -> None:
         np.testing.assert_allclose(kept[:, column], values, atol=PART * remade[:, column].max())
         with pytest.raises(AssertionError):
             np.testing.assert_allclose(1.01 * kept[:, column], values, atol=PART * remade[:, column].max())
+
+
+def test_the_curve_of_the_probe_names_the_command_that_makes_it() -> None:
+    text = (ROOT / "tactsim" / "experiments" / "switch_probe" / "probe_curve.py").read_text(encoding="utf-8")
+    assert "``python benchmarks/probe_curve.py``" in text
+    assert (ROOT / "benchmarks" / "probe_curve.py").is_file()
+
+
+@pytest.mark.slow
+def test_the_curve_of_the_probe_is_what_finite_elements_give() -> None:
+    """The force of the whole probe hardly knows the mesh; how high the tissue stands and what a strip carries jump from one
+    point of the surface to the next."""
+    kept = 1e3 * np.stack([CHAPTER_5.depth, CHAPTER_5.force, CHAPTER_5.contact_height, CHAPTER_5.switches[:, 0]], axis=1)
+    remade = np.array(list(probe_curve.rows()))
+    np.testing.assert_allclose(remade[:, 0], kept[:, 0], rtol=1e-6)
+
+    def check(kept: np.ndarray) -> None:
+        np.testing.assert_allclose(remade[:, 1], kept[:, 1], rtol=1e-3)
+        deep = kept[:, 0] > 1.99
+        np.testing.assert_allclose(remade[deep, 2], kept[deep, 2], atol=0.02)
+        np.testing.assert_allclose(remade[:, 3], kept[:, 3], atol=4e-3)
+
+    check(kept)
+    for column, factor in ((1, 1.002), (2, 1.05), (3, 1.05)):
+        wrong = kept.copy()
+        wrong[:, column] *= factor
+        with pytest.raises(AssertionError):
+            check(wrong)
