@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,6 +20,15 @@ import recorded_signals  # noqa: E402  another
 
 PART = 1e-3
 """Largest difference of a recorded force from a remade one, over the largest: steps that another machine takes elsewhere."""
+GALLERY = ROOT / "docs" / "gallery"
+STORED = sorted(path.parent for place in (ROOT / "cases", GALLERY) for path in place.glob("stored/*/result.json"))
+"""Results that cases and pages read; `docs/gallery/plot_NAME.py` makes one anew where its folder is missing."""
+BY_POINTS = {"min_volume_ratio": 0.05, "max_penetration": 0.2}
+"""What single points decide, and by which part of it they may differ."""
+SMALL = {"penetration_force_error": 1e-4}
+"""Differences of large numbers, and by how much they may differ: by a part of the force that nobody sees."""
+NOTHING = 1e-6
+"""Of a number without a unit, such as an asymmetry: below this it is round-off."""
 
 
 def recorded() -> np.ndarray:
@@ -74,3 +85,33 @@ def test_the_curve_of_the_probe_is_what_finite_elements_give() -> None:
         wrong[:, column] *= factor
         with pytest.raises(AssertionError):
             check(wrong)
+
+
+def differences(kept: dict[str, Any], remade: ts.Result) -> dict[str, float]:
+    """Largest difference of every kept quantity over its largest value, if it is more than is allowed."""
+    assert set(kept) == set(remade.quantities)
+    wrong = {}
+    for name, quantity in kept.items():
+        first, second = (np.array(value, dtype=float) for value in (quantity["value"], remade.quantities[name].value))
+        assert first.shape == second.shape, name
+        size = max(float(np.nanmax(np.abs(first), initial=0.0)), NOTHING if quantity["unit"] == "1" else 0.0)
+        difference = float(np.nanmax(np.abs(first - second), initial=0.0))
+        if (
+            difference > max(BY_POINTS.get(name, PART) * size, SMALL.get(name, 0.0))
+            or (np.isnan(first) != np.isnan(second)).any()
+        ):
+            wrong[name] = difference / size
+    return wrong
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("folder", STORED, ids=lambda folder: f"{folder.parents[1].name}-{folder.name}")
+def test_a_stored_result_is_what_its_case_gives(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(GALLERY)  # where the results that a case reads are looked for
+    case = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))["case"]["experiment"]
+    kept = json.loads((folder / "result.json").read_text(encoding="utf-8"))["quantities"]
+    remade = ts.kinds("experiment")[case["kind"]].model_validate(case).run()
+    assert differences(kept, remade) == {}
+    name = next(name for name, quantity in kept.items() if np.any(np.array(quantity["value"], dtype=float)))
+    moved = {**kept, name: {**kept[name], "value": (1.3 * np.array(kept[name]["value"], dtype=float)).tolist()}}
+    assert list(differences(moved, remade)) == [name]
