@@ -6,6 +6,7 @@ from abc import ABC, abstractmethod
 from inspect import isabstract
 from typing import Any, ClassVar, Self
 
+from tactsim.errors import InvalidQuantity, shown
 from tactsim.model import FrozenModel
 from tactsim.registry import register
 
@@ -22,6 +23,9 @@ class Kind(FrozenModel, ABC):
     @classmethod
     def __pydantic_init_subclass__(cls, **options: Any) -> None:
         super().__pydantic_init_subclass__(**options)
+        for name, one in cls.model_fields.items():
+            if one.annotation is float and isinstance(one.default, str):  # nothing reads it, and text goes where a number belongs
+                raise InvalidQuantity(f"{cls.__name__}.{name}: the default {shown(one.default)} is text; needed: a number in SI")
         if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
             register(cls)
 

@@ -133,7 +133,7 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
         return path, f"{as_written(value)} is not allowed{suggestion(str(value), choices)}; choices: {context['expected']}"
     return path, _out_of_bounds(
         context, value, fragment
-    ) or f"{as_written(value)} is not allowed; expected {_wanted(detail, fragment, schema)}{_comma(value)}"
+    ) or f"{as_written(value)} is not allowed; expected {_wanted(detail, fragment, schema)}{_instead(value)}"
 
 
 def _deeper(path: Path, root: Any, schema: dict[str, Any], allowed: Sequence[str]) -> str:
@@ -143,9 +143,13 @@ def _deeper(path: Path, root: Any, schema: dict[str, Any], allowed: Sequence[str
     return f" (did you mean {'.'.join(map(str, (*above, beside[0], key)))!r}?)" if beside else ""
 
 
-def _comma(value: Any) -> str:
-    """What to say of a text that would be a number with a decimal point."""
-    return f"; {DECIMAL_POINT}" if isinstance(value, str) and re.fullmatch(r"[-+]?\d*,\d+", value) else ""
+def _instead(value: Any) -> str:
+    """What to say of a text that would be a number with a decimal point, or without its percent sign."""
+    if not isinstance(value, str):
+        return ""
+    if percent := re.fullmatch(r"([-+]?\d+(?:\.\d+)?)\s*%", value):
+        return f", {float(percent[1]) / 100:.15g} for {value}"
+    return f"; {DECIMAL_POINT}" if re.fullmatch(r"[-+]?\d*,\d+", value) else ""
 
 
 def _blamed_within(path: Path, value: Any, message: str) -> tuple[Path, str]:
@@ -171,7 +175,9 @@ def _out_of_bounds(context: dict[str, Any], value: Any, fragment: dict[str, Any]
             return f"{as_written(value)} is out of range; must be {words} {bound}"
     for name, words in (("min_length", "at least"), ("max_length", "at most")):
         if name in context:
-            return f"{as_written(value)} has the wrong length; expected {words} {context[name]} entries or characters"
+            one, several = ("character", "characters") if isinstance(value, str) else ("entry", "entries")
+            counted = f"{context[name]} {one if context[name] == 1 else several}"
+            return f"{as_written(value)} has the wrong length; expected {words} {counted}"
     return ""
 
 

@@ -20,6 +20,7 @@ from tactsim.unit_definitions import (
     UNPREFIXED,
     customary_words,
     prefix_power,
+    single_words,
 )
 
 UNREADABLE = (ArithmeticError, ValueError, TypeError, AttributeError, AssertionError)
@@ -74,9 +75,9 @@ def factor_to(unit: str, given_unit: str) -> float:
 
 
 @lru_cache(maxsize=1024)
-def is_known(unit: str) -> bool:
-    """Whether it is a unit."""
-    if prefix_power(unit, unit) is not None:
+def is_known(unit: str, words: tuple[str, ...]) -> bool:
+    """Whether it is a unit; ``words`` are those in it."""
+    if prefix_power(unit, unit) is not None or single_words() >= set(words):
         return True
     import pint
 

@@ -141,12 +141,17 @@ def prefix_power(unit: str, given_unit: str) -> int | None:
 
 @cache
 def customary_words() -> frozenset[str]:
-    """Every spelling of a customary unit, with its prefixes."""
+    """Every spelling of a customary unit, with its prefixes, and each with the s of a plural, which few of them take."""
+    return single_words() | {f"{name}s" for name in single_words()}
+
+
+@cache
+def single_words() -> frozenset[str]:
+    """Every spelling of one of a customary unit, with its prefixes: all of them are read."""
     prefixes, prefixed, unprefixed = (
         {name.removesuffix("-") for line in lines for name in _names(line)} for lines in (PREFIXES, PREFIXED, UNPREFIXED)
     )
-    single = {*unprefixed, *prefixed, *(prefix + name for prefix in prefixes for name in prefixed)}
-    return frozenset({*single, *(f"{name}s" for name in single)})
+    return frozenset({*unprefixed, *prefixed, *(prefix + name for prefix in prefixes for name in prefixed)})
 
 
 def _names(definition: str) -> list[str]:

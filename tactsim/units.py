@@ -38,13 +38,27 @@ _UNIT = re.compile(rf"(?=.{{1,40}}$)(?:1\s*/\s*)?(?:{_FACTOR})(?:\s*[*/·]\s*(?:
 
 LONGEST_COUNT = 1e9
 """Whole numbers below it are written with all their digits."""
+DASHES = ("\u2212", "\u2013")
+"""The minus sign and the dash that papers and web pages have before a negative number."""
 DECIMAL_POINT = "decimals begin with a point, not a comma"
 
 
 @lru_cache(maxsize=1024)
 def is_unit(text: str) -> bool:
     """Whether ``text`` is a unit that numbers can be shown in; "" and "1" are that of a plain number."""
-    return text in ("", "1") or (_UNIT.fullmatch(text) is not None and is_known(text))
+    return text in ("", "1") or (_UNIT.fullmatch(text) is not None and is_known(text, tuple(re.findall(_WORD, text))))
+
+
+def check_unit(what: str, unit: Any) -> None:
+    """Refuses a unit in which nothing can be reported; ``what`` begins the message.
+
+    Raises
+    ------
+    InvalidQuantity
+        If it is no text, or unknown.
+    """
+    if not isinstance(unit, str) or not is_unit(unit):
+        raise InvalidQuantity(f"{what}: {shown(unit)} is no unit that is known; expected text such as 'N' or '1'")
 
 
 @lru_cache(maxsize=1024)
@@ -74,9 +88,10 @@ def parse_quantity(text: str, unit: str) -> float:
         hint = f" (is it {powers!r}?)" if powers != given_unit and is_unit(powers) else ""
         return InvalidQuantity(f"{shown(text)} has an unknown unit {shown(given_unit)}{hint}; {expected()}")
 
-    parts = _QUANTITY.fullmatch(text.strip())
+    parts = _QUANTITY.fullmatch(re.sub(r"\s", " ", text.strip()))  # papers and web pages have spaces that do not break
     if parts is None or (parts["unit"] or "").startswith(","):
         point = DECIMAL_POINT if re.match(r"\s*[-+]?\d*,\d", text) else expected()
+        point = "a minus is a hyphen, '-'" if text.lstrip()[:1] in DASHES else point
         raise InvalidQuantity(f"{shown(text)} is not a quantity; {point}")
     value, given_unit = float(parts["number"]), parts["unit"]
     if not math.isfinite(value):

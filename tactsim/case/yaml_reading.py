@@ -96,17 +96,23 @@ def _composed(composer: _Composer) -> Document:
     try:
         return composer.document()
     except MarkedYAMLError as error:
-        mark = error.problem_mark or error.context_mark
-        what = " ".join(part for part in (error.context, error.problem) if part)
-        raise YamlProblems(
-            Problem(
-                (), mark.line + 1 if mark else 0, f"not valid YAML: {what}; a line is 'key: value', indented as its neighbours"
-            )
-        ) from None
+        raise YamlProblems(_syntax_problem(error)) from None
     except YAMLError as error:
         raise YamlProblems(Problem((), 0, f"not valid YAML: {str(error).splitlines()[0]}")) from None
     except (ValueError, LookupError, AttributeError, TypeError, ArithmeticError, AssertionError, RecursionError):
         raise YamlProblems(Problem((), 0, "not valid YAML")) from None
+
+
+def _syntax_problem(error: MarkedYAMLError) -> Problem:
+    """What the parser stumbled over, and where what it was reading began: a quote or a bracket is missed only lines later."""
+    mark, begin = error.problem_mark or error.context_mark, error.context_mark
+    if "'\\t'" in (error.problem or ""):
+        return Problem((), mark.line + 1, "not valid YAML: a tab; write spaces, as many as its neighbours have")
+    since = f" (begun on line {begin.line + 1})" if mark and begin and begin.line < mark.line else ""
+    what = " ".join(part for part in (error.context and f"{error.context}{since}", error.problem) if part)
+    before = "" if since else "; the slip may be on the line before"
+    words = f"not valid YAML: {what}; a line is 'key: value', indented as its neighbours{before}"
+    return Problem((), mark.line + 1 if mark else 0, words)
 
 
 class _Composer:

@@ -214,6 +214,7 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
     """Writes the result, reports it, and returns the exit code of its status."""
     from tactsim.cli.figures.result_figures import rendered_figures
     from tactsim.cli.report import last_line, result_report
+    from tactsim.results import Status
 
     result = replace(result, title=case.title)
     figures, warnings = ({}, []) if arguments.figures == "none" else rendered_figures(result, arguments.figures)
@@ -231,6 +232,8 @@ def _finish(result: Result, case: Case, folder: OutputFolder, interruption: Inte
         if kept:
             console.out(f"  the earlier result, which converged, is kept in {kept}")
         console.out(last_line(result, folder.path, figures))
+    elif result.status is Status.FAILED:
+        console.error(f"{one_line(result.provenance['case_file'])}: {last_line(result, folder.path, figures)}")
     return INTERRUPTED if interruption.requested else result.status.exit_code
 
 

@@ -11,13 +11,13 @@ from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
-from typing import Any, ClassVar, Literal, Self, TypeVar, final
+from typing import Any, Literal, Self, TypeVar, final
 
 from tactsim.deadline import TOO_LONG, allowed_seconds, check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished, shown
+from tactsim.interfaces.history_units import KindWithHistory
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
-from tactsim.kind import CaseKind
 from tactsim.presenter import presenter
 from tactsim.progress import COMPILATION, quiet, step_bar
 from tactsim.results.quantity import Quantity
@@ -77,11 +77,8 @@ class Course:
         return cls(findings.steps, lambda: findings)
 
 
-class Runnable(CaseKind):
+class Runnable(KindWithHistory):
     """What can be run: what is the same for every kind of `Experiment`."""
-
-    history_units: ClassVar[dict[str, str]] = {}
-    """Unit of every value that an accepted step records."""
 
     @property
     def extent(self) -> tuple[str, float] | None:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from tactsim.registry import MarkedFunction, mark
+from tactsim.units import check_unit
 
 Function = TypeVar("Function", bound=Callable[..., Any])
 
@@ -21,9 +22,16 @@ def quantity(*, unit: str | Callable[..., str], check: Callable[..., None] | Non
     A row asks for it with ``evaluate: {kind: initial_modulus, material: icf_printed}``. The type of an argument sets its unit and
     bounds; its description stands there or under ``Parameters``. A parameter ``inputs: Inputs`` receives the outcomes of the
     table's studies. ``unit`` and ``check`` are those of `MarkedFunction`.
+
+    Raises
+    ------
+    InvalidQuantity
+        When the function is marked, if its unit is unknown.
     """
 
     def marked(function: Function) -> Function:
+        if isinstance(unit, str):
+            check_unit(f"the unit of the quantity {function.__name__}", unit)
         mark(MarkedFunction("quantity", function, unit, check))
         return function
 

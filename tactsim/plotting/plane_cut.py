@@ -38,12 +38,14 @@ class PlaneCut:
     ----------
     triangles : (T, 3, 2) corners in m, along the two other axes in their order
     values : (T, 3) at the corners
+    regions : (T,) of the triangles: 0 is the tissue, k the inclusion k
     segments : (S, 2, 2) ends in m of the pieces of the outline and of the interfaces
     between : (S, 2) regions on both sides of each piece, the lower first; ``OUTER`` beyond the boundary
     """
 
     triangles: Array
     values: Array
+    regions: Array
     segments: Array
     between: Array
 
@@ -73,12 +75,15 @@ def plane_cut(frame: FieldFrame, axis: int, level: float, values: Array) -> Plan
     elements, (faces, between) = frame.cells["tetra10"], interfaces(frame)
     crossed = _crossed(nodal_values, elements)
     cut_values = values[elements[crossed]] if values.ndim == 1 else _quadratic_values(values[crossed])
-    cut = _cut_tetrahedra(_divided(np.concatenate([nodal_values[elements[crossed]], cut_values[:, :, None]], axis=2)))
+    regions = np.broadcast_to(regions_of(frame)[crossed, None], cut_values.shape)
+    cut_nodes = np.concatenate([nodal_values[elements[crossed]], np.stack([cut_values, regions], axis=2)], axis=2)
+    cut = _cut_tetrahedra(_divided(cut_nodes))
     near = _crossed(nodal_values, faces)
     pieces, number = _cut_triangles(_divided(nodal_values[faces[near]]))
     longest = np.linalg.norm(cut[:, :, 1:3] - np.roll(cut[:, :, 1:3], 1, axis=1), axis=2).max(axis=1, initial=0.0)
     whole = np.abs(np.linalg.det(cut[:, 1:, 1:3] - cut[:, :1, 1:3])) > SLIVER * np.ptp(nodes) * longest
-    return PlaneCut(cut[whole, :, 1:3], cut[whole, :, 3], pieces[:, :, 1:3], between[near[number // PARTS**2]])
+    triangles, shown, inside = cut[whole, :, 1:3], cut[whole, :, 3], cut[whole, 0, 4].round().astype(int)
+    return PlaneCut(triangles, shown, inside, pieces[:, :, 1:3], between[near[number // PARTS**2]])
 
 
 def _crossed(nodal_values: Array, elements: Array) -> Array:

@@ -142,7 +142,8 @@ class Result:
             With the nearest name.
         """
         if name not in self.quantities:
-            raise UnknownName("quantity", str(name), self.quantities)
+            of_what = "" if self.status is Status.CONVERGED else f" of this {self.status} run"
+            raise UnknownName(f"quantity{of_what}", str(name), self.quantities)
         quantity = self.quantities[name]
         dims, shape = dimensions(name, quantity), quantity.numbers.shape
         placed = self.scene.coordinates(name) if isinstance(self.scene, Scene) else {}

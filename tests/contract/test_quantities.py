@@ -16,7 +16,7 @@ import pytest
 from thesis_tables import GROUPS, MANIFEST, TABLE, shipped_tables, write_tables
 
 from tactsim.cli import main
-from tactsim.errors import CaseError, InputError
+from tactsim.errors import CaseError, InputError, InvalidQuantity
 from tactsim.interfaces import drawing, quantity
 from tactsim.registry import MarkedFunction, _marked, forget, marked_functions
 from tactsim.units import is_unit, parse_quantity
@@ -238,3 +238,13 @@ def test_a_name_serves_one_number_and_one_figure(module: Callable[..., Any]) -> 
         assert marked_functions(PACKAGE, "drawing")["doubled"].function is doubled
     finally:
         forget(doubled)
+
+
+def test_an_unknown_unit_is_refused_as_the_function_is_marked() -> None:
+    with pytest.raises(InvalidQuantity, match="the unit of the quantity doubled: 'parrot' is no unit that is known"):
+
+        @quantity(unit="parrot")
+        def doubled(length: float) -> float:
+            return 2 * length
+
+    assert "doubled" not in marked_functions(PACKAGE, "quantity")

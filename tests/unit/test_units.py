@@ -13,8 +13,8 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.errors import InvalidQuantity, Refused
 from tactsim.results.quantity import Quantity
 from tactsim.unit_conversion import _registry, compact, factor_to
-from tactsim.unit_definitions import PLAIN, PREFIXED, SHOWN_PREFIXES, UNPREFIXED, _powers_of_ten, prefix_power
-from tactsim.units import Length, compact_unit, format_quantity, parse_quantity, written_quantity
+from tactsim.unit_definitions import PLAIN, PREFIXED, SHOWN_PREFIXES, UNPREFIXED, _powers_of_ten, prefix_power, single_words
+from tactsim.units import Length, check_unit, compact_unit, format_quantity, is_unit, parse_quantity, written_quantity
 
 
 @pytest.mark.parametrize(
@@ -52,6 +52,8 @@ def test_text_is_read_in_any_unit_of_the_dimension(text: str, unit: str, value: 
         ("3 mm2", r"unknown unit 'mm2' \(is it 'mm\^2'\?\)"),
         ("3 mx2", "unknown unit 'mx2';"),
         ("1,5 mm", "decimals begin with a point, not a comma"),
+        ("\u22125 mm", "a minus is a hyphen, '-'"),
+        ("\u20135 mm", "a minus is a hyphen, '-'"),
         ("1_0 m", "has an unknown unit"),
         ("٣ m", "is not a quantity"),
         ("3 m**9**9**9**9", "has an unknown unit"),
@@ -209,3 +211,23 @@ def test_a_length_of_a_result_is_no_number() -> None:
     assert Coulomb(friction=Quantity(0.3, "1", "")).friction == 0.3
     with pytest.raises(Refused, match=r"Coulomb: friction: '0.002 m' is not allowed; expected a number"):
         Coulomb(friction=Quantity(2e-3, "m", ""))
+
+
+def test_every_word_that_is_known_without_pint_is_known_to_it():
+    registry = _registry()
+    unread = [word for word in single_words() if not registry.parse_unit_name(word)]
+    assert unread == []
+    assert all(map(is_unit, ("N m", "kg/m^3", "1/Pa", "kPa*s", "rad/s", "%", "cmH2O")))
+    assert not any(map(is_unit, ("Nn", "N Nn", "m/", "kms", "parrot/s")))
+
+
+@pytest.mark.parametrize("unit", ["Nn", "kg/parrot", 3, None])
+def test_a_unit_in_which_nothing_can_be_reported_is_refused_with_its_place(unit):
+    with pytest.raises(InvalidQuantity, match=f"^Weighing: {unit!r} is no unit that is known; expected text such as 'N' or '1'$"):
+        check_unit("Weighing", unit)
+
+
+@pytest.mark.parametrize("space", ["\u00a0", "\u202f", "\u2009"])
+def test_a_space_of_a_paper_or_a_web_page_is_a_space(space):
+    assert parse_quantity(f"9.08{space}mN", "N") == parse_quantity("9.08 mN", "N")
+    assert parse_quantity(f"3 Pa{space}s", "Pa*s") == 3.0

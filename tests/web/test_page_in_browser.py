@@ -251,6 +251,20 @@ def test_a_result_shows_its_numbers_turns_plays_and_changes_estimators(browser: 
         until(lambda: shows(browser, forces / 9e-3**2 / 1e3))
 
 
+def test_the_page_says_that_it_waits_until_the_server_has_sent_something(browser: webdriver.Chrome, tmp_path: Path) -> None:
+    silent = "window.WebSocket = class extends EventTarget { static CLOSED = 3; readyState = 0; };"
+    script = browser.execute_cdp_cmd("Page.addScriptToEvaluateOnNewDocument", {"source": silent})
+    with served(opened_content(grasp_folder(tmp_path / "a"))) as address:
+        try:
+            browser.get(address)
+            assert shows_element(browser, "waiting")
+        finally:
+            browser.execute_cdp_cmd("Page.removeScriptToEvaluateOnNewDocument", script)
+        browser.get(address)
+        assert until(lambda: words(browser, "title") == TITLE)
+        assert not shows_element(browser, "waiting")
+
+
 @pytest.mark.parametrize("factors", [(0.01, 0.01, 0.01), (3.0, 3.0, 0.3), (0.5, 0.5, 3.0)])
 def test_blocks_of_any_shape_have_ticks_that_are_apart_and_a_view_that_shows_all(
     factors: tuple[float, float, float], browser: webdriver.Chrome, tmp_path: Path

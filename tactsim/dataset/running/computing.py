@@ -98,7 +98,7 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
         raise  # what the sweep stores is wrong for every sample
     except (TactsimError, MemoryError) as error:
         return FAILED, f"{type(error).__name__}: {error}", {}
-    except (ValueError, ArithmeticError, LookupError, RuntimeError) as error:
+    except Exception as error:  # noqa: BLE001  a defect in a kind of the user's own ends no other sample
         return FAILED, f"{type(error).__name__}: {error}; from {place_of(error)}", {}
     warnings = "\n".join(map(one_line, result.warnings))[:LONGEST_WARNINGS]
     return DONE, result.reason, {**values, "warnings": warnings}

@@ -216,11 +216,13 @@ function connect() {
   socket.binaryType = "arraybuffer";
   socket.onopen = () => past();
   socket.onmessage = ({ data }) => {
+    get("waiting").hidden = true;
     if (typeof data !== "string") return takeFrame(data);
     const message = JSON.parse(data);
     take[message.is]?.(message);
   };
   socket.onclose = () => {
+    get("waiting").hidden = true;
     answer.lost();
     controls.lost();
     past();

@@ -154,6 +154,7 @@ class Session:
         if scene is not None and scene is not self._scene:
             await self._introduce(scene, recording)
         if scene is None:
+            self._thinking.drop_shapes()
             await self._send_text(plain_json({"is": "state"} | self._chosen.state()))
         elif frame is not None and (frame is not self._shown or not self._chosen.live or not self._scales.ends.any()):
             await self._send_frame(scene, frame, recording)

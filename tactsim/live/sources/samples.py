@@ -15,6 +15,7 @@ from tactsim.dataset.sampling.stored import stored_sweep
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, PENDING, STATUS
 from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.verifying import refuse_holes
 from tactsim.dataset.use.loading import opened, split_names
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
@@ -115,11 +116,14 @@ class Samples:
         InputError
             If there is no such sample.
         StorageError
-            If this version of tactsim cannot make out its case.
+            If the data set or this sample is gone since it was opened, or this version of tactsim cannot make out its case.
         """
         if not 0 <= number < self.count:
             raise InputError(f"there is no sample {number}; allowed: 0 to {self.count - 1}")
         row = self.data.isel(sample=number)
+        names = [name for name in (*SOURCES, "time_s", "displacement") if name in row]
+        computed = np.array([number] if int(row["status"]) != PENDING else [], int)
+        refuse_holes(Store.open(self.place), names, computed)  # of what is gone Zarr reads numbers that are none
         scene = self._scene(number, int(row["status"]))
         times = np.atleast_1d(np.asarray(row["time_s"].values, dtype=float))
         if not np.isfinite(times).all():

@@ -86,6 +86,11 @@ def test_every_fault_is_told_with_line_path_value_and_choices(case_file: Path) -
             "kind: pretence\n  friction: 0,6",
             "6: experiment.friction: '0,6' is not allowed; expected a number; decimals begin with a point, not a comma",
         ),
+        (
+            "kind: pretence",
+            "kind: pretence\n  friction: 40 %",
+            "6: experiment.friction: '40 %' is not allowed; expected a number, 0.4 for 40 %",
+        ),
         ("modulus: 3 kPa}", "modulus: 3,5 kPa}", "10: experiment.specimen.layers.0.material.5 kPa: unknown key"),
         ("kind: pretence", "kind: pretence\n  pause: nan s", "6: experiment.pause: 'nan s' is not finite; "),
         (

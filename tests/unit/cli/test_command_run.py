@@ -81,6 +81,9 @@ def test_provenance_holds_the_resolved_case_and_the_overrides() -> None:
 def test_quiet_is_quiet(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "case.yaml", "--quiet"]) == 0
     assert capsys.readouterr() == ("", "")
+    assert main(["run", "case.yaml", "--quiet", "--figures", "none", "--set", "experiment.fail_at=2"]) == 3
+    words = "error: case.yaml: failed: residual 1.0 after 25 iterations; result results/case\n"
+    assert capsys.readouterr() == ("", words), "that it failed is an error"
 
 
 def test_progress_reports_every_accepted_step(capsys: pytest.CaptureFixture[str]) -> None:

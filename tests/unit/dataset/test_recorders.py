@@ -257,15 +257,18 @@ def test_a_sample_that_takes_longer_than_it_may_is_marked_failed() -> None:
     assert np.isfinite(block["inclusion_radius"][0, 0])
 
 
-def test_a_defect_of_a_kind_is_the_reason_of_its_sample_with_the_line_at_which_it_arose(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("defect", [LookupError, AttributeError, TypeError, AssertionError])
+def test_a_defect_of_a_kind_is_the_reason_of_its_sample_with_the_line_at_which_it_arose(
+    defect: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
     def begin(self: ClosedForm) -> None:
-        raise LookupError("no such spring")
+        raise defect("no such spring")
 
     monkeypatch.setattr(ClosedForm, "begin", begin)
     block = decoded(computed(load_sweep(CASES / "sweep_closed_form.yaml", ("sweep.samples=1",)).text, [0]))
     assert block["status"].tolist() == [FAILED]
     line = begin.__code__.co_firstlineno + 1
-    assert block["reason"].tolist() == [f"LookupError: no such spring; from line {line} of {__name__}"]
+    assert block["reason"].tolist() == [f"{defect.__name__}: no such spring; from line {line} of {__name__}"]
 
 
 def test_samples_for_which_the_time_did_not_suffice_are_computed_again_with_more_of_it(tmp_path: Path) -> None:

@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 import pytest
 
-from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime
+from tactsim.errors import Collapsed, ConvergenceError, InputError, InvalidQuantity, OutOfMemory, OutOfTime, UnknownName
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import NO_MEMORY, Course, Findings, returned_by, run_within_another, timed
-from tactsim.registry import forget
+from tactsim.registry import forget, kinds
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, StepRecord, rows
+from tactsim.units import Length
 
 
 def raised(error: BaseException | None) -> None:
@@ -173,3 +175,56 @@ def test_times_of_parts() -> None:
     with pytest.raises(ValueError, match="lost"), timed(timing, "other"):
         raise ValueError("lost")
     assert list(timing) == ["part"]
+
+
+def test_a_quantity_that_a_run_did_not_get_to_is_not_called_a_slip_alone(made: Callable[..., Experiment]) -> None:
+    with pytest.raises(UnknownName, match=r"unknown quantity 'threshold'; known: count"):
+        made().run(None)["threshold"]
+    with pytest.raises(UnknownName, match=r"unknown quantity of this failed run 'threshold'; known: count"):
+        made(after=ConvergenceError("no way on")).run(None)["threshold"]
+
+
+@pytest.mark.parametrize(
+    ("units", "words"),
+    [
+        ({"displacement": "mm", "force": "parrot"}, "Weighed.history_units: force: 'parrot' is no unit that is known"),
+        (["N"], "Weighed.history_units is a list; needed: a unit by each name"),
+    ],
+)
+def test_units_of_a_history_that_are_none_are_refused_as_the_class_is_defined(units: Any, words: str) -> None:
+    with pytest.raises(InvalidQuantity, match=re.escape(words)):
+
+        class Weighed(Experiment):
+            """Its force has no unit."""
+
+            kind: Literal["weighed"] = "weighed"
+            history_units: ClassVar[Any] = units
+
+            def begin(self) -> Course:
+                return Course.computed(Findings("weighed"))
+
+            @classmethod
+            def example(cls) -> Weighed:
+                return cls()
+
+    assert "weighed" not in kinds(Experiment)
+
+
+def test_a_default_that_is_text_where_a_number_belongs_is_refused_as_the_class_is_defined() -> None:
+    words = "Sized.size: the default '3 mm' is text; needed: a number in SI"
+    with pytest.raises(InvalidQuantity, match=words):
+
+        class Sized(Experiment):
+            """A length that nothing reads."""
+
+            kind: Literal["sized"] = "sized"
+            size: Length = "3 mm"
+
+            def begin(self) -> Course:
+                return Course.computed(Findings("sized"))
+
+            @classmethod
+            def example(cls) -> Sized:
+                return cls()
+
+    assert "sized" not in kinds(Experiment)

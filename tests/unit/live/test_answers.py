@@ -20,6 +20,7 @@ from tactsim.live.session.content import opened_content
 from tactsim.live.session.estimating import frame_readings, shown_signal
 from tactsim.live.sources import feed as feeds
 from tactsim.live.sources.feed import Feed
+from tactsim.live.sources.samples import Samples
 from tactsim.live.sources.scene import PageScene
 
 
@@ -178,4 +179,23 @@ def test_true_inclusions_of_a_sample_never_stand_in_the_next_one(tmp_path: Path,
         await page.until(lambda: "shapes" in page.last)
         assert "sample 1" in page.last["shapes"]["of"]
 
-    with_client(opened_content(made_up_store(tmp_path)), act)
+    async def none(client: Client) -> None:
+        page = await opened_page(client)
+        await page.until(lambda: "frame" in page.last)
+        await asyncio.to_thread(of_first.wait, 10.0)
+        await page.do("filter", split=others, status="failed")
+        await page.until(lambda: "state" in page.last)
+        assert page.last["state"]["selection_fault"].startswith("no sample has this split and status")
+        go_on.set()
+        await asyncio.sleep(0.3)
+        await page.do("sample", number=6)
+        await page.until(lambda: "fault" in page.last)
+        assert "shapes" not in page.last, "they stand on a page that shows no sample"
+
+    store = made_up_store(tmp_path)
+    samples = Samples.open(store)
+    others = next(name for name in samples.splits if name != samples.status_of(4)["split"])
+    with_client(opened_content(store), act)
+    go_on.clear()
+    of_first.clear()
+    with_client(opened_content(store), none)

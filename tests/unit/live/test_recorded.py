@@ -351,6 +351,18 @@ def test_a_sample_shows_what_the_store_holds_and_where_the_lump_was(tmp_path: Pa
     assert samples.recordings(5)["taxel_force"].scene.notes == ("sample 5 is pending: it was not computed",)
 
 
+def test_a_sample_that_is_gone_since_the_data_set_was_opened_is_said_to_be_gone(tmp_path: Path) -> None:
+    samples = Samples.open(made_up_store(tmp_path))
+    for chunk in (samples.place / "taxel_force" / "c").rglob("*"):
+        if chunk.is_file():
+            chunk.unlink()
+    with pytest.raises(StorageError, match=r"lumps\.zarr has holes: taxel_force of 1 samples \(0\) are gone"):
+        samples.recordings(0)
+    shutil.rmtree(samples.place)
+    with pytest.raises(StorageError, match=r"no such folder: .*lumps\.zarr"):
+        samples.recordings(1)
+
+
 def test_samples_are_sought_in_both_directions_and_around_the_end(tmp_path: Path) -> None:
     samples = Samples.open(made_up_store(tmp_path))
     assert samples.chosen(status="done").tolist() == [0, 1, 2, 3]

@@ -15,7 +15,7 @@ from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, drawn
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, robust_limits, scale_of, with_minus
-from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut, regions_of
+from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
 from tactsim.results import FieldFrame, Result
 from tactsim.results.fields import CORNER_PRESSURE, PRESSURE
 
@@ -82,9 +82,9 @@ def draw_section(axis: Axes, result: Result) -> None:
     if result.steps:
         pressure = frame.cell_data.get(CORNER_PRESSURE, np.asarray(frame.point_data[PRESSURE]).ravel())
         cut = plane_cut(frame, plane.across, plane.level, np.asarray(pressure))
-        _draw_pressure(axis, cut)
+        _draw_pressure(axis, cut, [k for k, one in enumerate(scene.inclusions, 1) if one.shape.hollow])
     else:
-        cut = plane_cut(frame, plane.across, plane.level, np.repeat(regions_of(frame)[:, None], 4, axis=1).astype(float))
+        cut = plane_cut(frame, plane.across, plane.level, np.zeros(len(frame.points)))
         _draw_regions(axis, cut)
     _draw_outlines(axis, cut, result)
     limits = _window(cut, scene)
@@ -99,10 +99,10 @@ def draw_section(axis: Axes, result: Result) -> None:
     despined(axis)
 
 
-def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
-    """The pressure with robust limits."""
-    areas = np.repeat(cut.areas(), 3) / 3
-    low, high = robust_limits(cut.values.ravel(), areas)
+def _draw_pressure(axis: Axes, cut: PlaneCut, hollow: list[int]) -> None:
+    """The pressure with robust limits; walls of hollow inclusions, far stiffer than the tissue, would take all colours."""
+    areas, around = cut.areas() / 3, ~np.isin(cut.regions, hollow)
+    low, high = robust_limits(cut.values[around].ravel(), np.repeat(areas[around], 3))
     factor, unit = scale_of(max(abs(low), abs(high)), "Pa")
     low, high, values = factor * low, factor * high, factor * cut.values.ravel()
     corners = 1e3 * cut.triangles.reshape(-1, 2)
@@ -113,14 +113,14 @@ def _draw_pressure(axis: Axes, cut: PlaneCut) -> None:
     bar = axis.figure.colorbar(drawn, ax=axis, extend=extend, location="bottom", shrink=0.7, aspect=36, pad=0.02)
     extremes = with_minus(f"in this cut {values.min():.3g} to {values.max():.3g} {unit}")
     words = "as computed: it varies linearly within an element, so that steep changes show the elements"
-    bar.set_label(f"pressure in the tissue in {unit} (colours: 1st to 99th percentile of the area; {extremes})\n{words}")
+    shares = "1st to 99th percentile of the area" + (" outside walls" if not around.all() else "")
+    bar.set_label(f"pressure in the tissue in {unit} (colours: {shares}; {extremes})\n{words}")
     bar.outline.set_linewidth(0.5)
 
 
 def _draw_regions(axis: Axes, cut: PlaneCut) -> None:
     """Tissue and inclusions, each in its colour."""
-    regions = cut.values.mean(axis=1).round().astype(int)
-    colours = np.array(REGION_COLOURS)[regions % len(REGION_COLOURS)]
+    colours = np.array(REGION_COLOURS)[cut.regions % len(REGION_COLOURS)]
     style: dict[str, Any] = {"facecolors": colours, "edgecolors": "face", "linewidths": 0.7, "rasterized": True}
     axis.add_collection(PolyCollection(list(1e3 * cut.triangles), **style))
 

@@ -24,11 +24,13 @@ from tactsim.interfaces.drawing import BegunDrawing
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.inclusions.sphere import Sphere
+from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.structured_block import morphed_block
 from tactsim.outside.processes import Ended
 from tactsim.plotting import canvas, figures_for, off_screen
 from tactsim.plotting.plane_cut import OUTER, interfaces, plane_cut
 from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
+from tactsim.results.fields import CORNER_PRESSURE
 
 SIZE = np.array([40e-3, 40e-3, 20e-3])
 SPHERE = Sphere(center=(20e-3, 20e-3, 12e-3), radius=5e-3)
@@ -139,6 +141,24 @@ def test_an_artery_is_shown_at_its_highest_pressure(frame):
     assert "highest pressure, 5 kPa" in text_of(section_figure(shown))
     assert shown_moment(result) is result
     assert shown_moment(replace(pulsing, frames=frames[1:])).quantities == pulsing.quantities
+
+
+def test_walls_of_an_artery_do_not_take_the_colours_of_the_tissue(frame):
+    """The same region at a hundred times its pressure, once as a ball, once as the wall of a tube."""
+    corners = frame.point_data["pressure [Pa]"][frame.cells["tetra10"][:, :4]]
+    stiff = corners * np.where(frame.cell_data["region [1]"] == 1, 100.0, 1.0)[:, None]
+    result = made_up(frame=replace(frame, cell_data={**frame.cell_data, CORNER_PRESSURE: stiff}))
+    tube = Tube(centre_line=((0, 20e-3, 12e-3), (40e-3, 20e-3, 12e-3)), inner_radius=4e-3, wall=1e-3)
+    artery = replace(result, scene=grasp_scene(SIZE, TaxelLayout(), [tube], closing=CLOSING))
+    highest, labels = {}, {}
+    for name, shown in (("ball", result), ("tube", artery)):
+        figure = section_figure(shown)
+        highest[name] = figure.axes[0].collections[0].get_clim()[1]
+        labels[name] = text_of(figure)
+    assert highest["ball"] > 100  # kPa
+    assert 4 < highest["tube"] < 7
+    assert "of the area outside walls" in labels["tube"]
+    assert "outside walls" not in labels["ball"]
 
 
 def test_interfaces_close_every_region_once(frame):
