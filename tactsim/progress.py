@@ -27,7 +27,7 @@ COMPILING = "compiling element loops, which later runs find on this machine (abo
 class Compilation:
     """What compiling has taken in this process; it is said once in a run, as it begins, that it goes on.
 
-    The first run in a section compiles the loops of sections, the first one in space those in space. One loop is compiled within
+    The first run in a section compiles the loops of sections, the first one in 3D those of 3D. One loop is compiled within
     another, on whatever thread: only the outermost counts.
 
     Attributes

@@ -14,6 +14,8 @@ from pathlib import Path
 import grimp
 import pytest
 
+from tactsim import errors
+
 ROOT = Path(__file__).parents[1]
 LONGEST_MODULE, LONGEST_FUNCTION = 300, 40
 MOST_POSITIONAL, MOST_METHODS = 5, 10
@@ -186,6 +188,46 @@ def silent_about_errors() -> list[str]:
     return [f.place for f in functions(public=True) if not says_raises(f) and raises(f.node)]
 
 
+def errors_left_unsaid() -> list[str]:
+    """Errors of this package that a public function raises and that its section neither names nor names a base class of."""
+    return [
+        f"{f.place}: {name}"
+        for f in functions(public=True)
+        for name in sorted(errors_raised(f.node))
+        if not {base.__name__ for base in getattr(errors, name).__mro__} & named_errors(f)
+    ]
+
+
+def errors_raised(function: Function) -> set[str]:
+    """Names of errors that leave a function where it raises them itself: not those that it catches again."""
+    tries = [node for node in own_nodes(function) if isinstance(node, ast.Try) and node.handlers]
+    caught = {id(inner) for node in tries for part in node.body for inner in (part, *own_nodes(part))}
+    raised = (node.exc for node in own_nodes(function) if isinstance(node, ast.Raise) and node.exc and id(node) not in caught)
+    names = {name for error in raised for name in names_of(error.func if isinstance(error, ast.Call) else error)}
+    return {name for name in names if isinstance(getattr(errors, name, None), type)}
+
+
+def named_errors(definition: Definition) -> set[str]:
+    section = (ast.get_docstring(definition.node) or "").partition("Raises\n------\n")[2]
+    return {name for line in re.findall(r"^\w+(?:, \w+)*$", section, re.M) for name in line.split(", ")}
+
+
+def other_ends_of_runs() -> list[str]:
+    """Modules that handle an interruption beside ``interfaces.run``, where every run ends, and the commands and sweeps above."""
+    allowed = ("tactsim/interfaces/run.py", "tactsim/cli/", "tactsim/dataset/running/whole.py")
+    handled = (
+        (path.relative_to(ROOT).as_posix(), node)
+        for path in modules()
+        for node in nodes(path)
+        if isinstance(node, ast.ExceptHandler) and node.type is not None
+    )
+    return [
+        f"{place}:{node.lineno}"
+        for place, node in handled
+        if not place.startswith(allowed) and "KeyboardInterrupt" in ast.unparse(node.type)
+    ]
+
+
 def empty_names() -> list[str]:
     return [
         path.relative_to(ROOT).as_posix() for path in modules() if EMPTY_NAMES & set(path.relative_to(ROOT).with_suffix("").parts)
@@ -233,6 +275,8 @@ RULES: list[Callable[[], list[str]]] = [
     large_classes,
     undocumented,
     silent_about_errors,
+    errors_left_unsaid,
+    other_ends_of_runs,
     empty_names,
     array_types,
     household_names,
@@ -254,6 +298,8 @@ BROKEN = {
     large_classes: "class A:\n" + "".join(f"    def m{k}(self): ...\n" for k in range(11)),
     undocumented: '"""A module."""\ndef f(): ...',
     silent_about_errors: 'def f():\n    """F."""\n    raise ValueError',
+    errors_left_unsaid: 'def f():\n    """F.\n\n    Raises\n    ------\n    CaseError\n    """\n    raise StorageError',
+    other_ends_of_runs: "try:\n    a = 1\nexcept (ValueError, KeyboardInterrupt):\n    pass",
     household_names: "found = 1",
     printing: "print(1)",
     machine_paths: "PLACE = '" + "/home/" + "someone/case.yaml'",

@@ -1,8 +1,8 @@
 """
-Indentation in space: a sensor that leans
-=========================================
+Indentation in 3D: a sensor that leans
+========================================
 
-The axisymmetric model assumes that the sensor stands upright on the axis of the specimen. A hand does not do that. In space the
+The axisymmetric model assumes that the sensor stands upright on the axis of the specimen. A hand does not do that. In 3D the
 ring may lean and stand off the axis; half of the specimen is meshed with tetrahedra.
 """
 

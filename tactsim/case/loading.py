@@ -59,6 +59,8 @@ def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -
         With one line for every fault: the file, the line, the key path, the value, and what is allowed.
     StorageError
         If the file is missing or cannot be read.
+    InputError
+        If ``overrides`` are neither a mapping nor texts.
     """
     return validated_case(*read_document(path, overrides))
 
@@ -72,6 +74,8 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
         If the text is not YAML, not a mapping, or an override cannot be applied.
     StorageError
         If the file is missing or cannot be read.
+    InputError
+        If ``overrides`` are neither a mapping nor texts.
     """
     if isinstance(path, Mapping):
         path, document = "case", Document(plain(path))

@@ -98,7 +98,7 @@ class Regularisation:
 
 @dataclass(frozen=True)
 class Augmentation(Regularisation):
-    """A penalty so soft that Newton converges in space with friction, and multipliers that bring the penetration below the
+    """A penalty so soft that Newton converges in 3D with friction, and multipliers that bring the penetration below the
     tolerance (augmented Lagrangian, Simo & Laursen 1992, doi:10.1016/0045-7949(92)90540-G).
 
     ``softness`` in m is the penetration at the largest pressure without multipliers.

@@ -12,7 +12,7 @@ from tactsim.units import format_quantity
 
 
 class Revolved(RigidBody):
-    """A body of revolution about z; points are (r, z) on an axisymmetric mesh or (x, y, z) in space."""
+    """A body of revolution about z; points are (r, z) on an axisymmetric mesh or (x, y, z) in 3D."""
 
     @abstractmethod
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:

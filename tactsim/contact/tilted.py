@@ -15,7 +15,7 @@ from tactsim.registry import Registered
 from tactsim.units import Angle
 
 TiltableBody = Annotated[RigidBody, Registered(RigidBody, lambda cls: {2, 3} <= set(cls.dimensions))]
-"""Any body that is defined by its section and in space, which is a body of revolution."""
+"""Any body that is defined both by its section and in 3D, which makes it a body of revolution."""
 Tilt = Annotated[Angle, Field(ge=-0.5, le=0.5)]
 
 

@@ -17,7 +17,7 @@ from tactsim.units import Angle, Length, NonNegative, Positive, format_quantity
 class Trapezoid(Revolved):
     """A flat face at z = 0 between two sides that lean outwards, with rounded corners.
 
-    On a mesh in plane strain it is the section of a prism, on an axisymmetric mesh and in space that of a truncated cone.
+    On a mesh in plane strain it is the section of a prism, on an axisymmetric mesh and in 3D that of a truncated cone.
 
     Source: thesis, section 5.1.1: sides of 20 degrees, read as the lean of each side from the axis of the probe; width of the
     face and fillet are not printed and are declared assumptions.

@@ -3,7 +3,8 @@
 To add a kind, subclass its point with a literal ``kind`` that has a default, in a new module of the point's ``package`` or
 anywhere else, such as a notebook. It is registered as it is defined; no list names it. `registry.kinds` lists the kinds of a
 point, `registry.forget` removes one, and two classes with one ``kind`` are an error that names both. A number or a figure of a
-thesis table is a function that `quantity` or `drawing` marks. `Recorder` and these two stand in modules beside this one.
+thesis table is a function that `quantity` or `drawing` marks. `Recorder` and these two stand in modules beside this one,
+`Scene`, what later stages read of a result, among the results.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from tactsim.interfaces.table_functions import quantity as quantity
 from tactsim.kind import CaseKind, Kind
 from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result
+from tactsim.results.scene import Scene as Scene
 from tactsim.units import Area, Positive
 
 

@@ -17,7 +17,7 @@ from tactsim.units import format_quantity
 MOST_NAMED = 6
 """Taxels that a message names before it counts the rest."""
 RESOLUTION = 0.1
-"""Resolution of a sensor in N: thesis, section 6.2."""
+"""Force in N that a sensor resolves: thesis, 3.1.2 and 6.2."""
 SAME_BLOCK = 1e-6
 """Largest relative difference of the sides of one block."""
 ROUNDING_NOISE = RESOLUTION / 12**0.5

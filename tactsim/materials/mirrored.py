@@ -40,5 +40,5 @@ def check_in_plane(material: Material) -> None:
     if not law_mirrors(material, 2):
         raise InputError(
             f"material {material.kind} shears a section out of its plane, within which all is computed; its third axis is the "
-            "hoop, or the depth in plane strain: turn the axes of the material, or take a body in space"
+            "hoop, or the depth in plane strain: turn the axes of the material, or take a body in 3D"
         )

@@ -1,4 +1,4 @@
-"""Pictures of surfaces in space by VTK without a window, in a process of its own.
+"""Pictures of surfaces in 3D by VTK without a window, in a process of its own.
 
 VTK ends the whole process where it finds no graphics library (EGL, OSMesa or an X server); the run that asks for a picture must
 survive that.

@@ -1,4 +1,4 @@
-"""A figure around pictures of a scene in space, which another process renders while other figures are drawn."""
+"""A figure around pictures of a scene in 3D, which another process renders while other figures are drawn."""
 
 from __future__ import annotations
 

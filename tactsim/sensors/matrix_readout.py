@@ -53,7 +53,7 @@ class MatrixReadout(ForceElectronics):
         return self.line_of(self.film_of(area))
 
     def read(self, time: Array, force: Array, area: float) -> MatrixReading:
-        """Readings of forces (n, *channels) in N at times (n,) in s > 0, which begin with no force at 0 s.
+        """Readings of forces (n, *channels) in N at times (n,) in s; before the first of them they rise from nothing at 0 s.
 
         Parameters
         ----------

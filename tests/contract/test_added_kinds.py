@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from made_grasps import LAYOUT, SIZE, plain_forces
 
+from tactsim import interfaces, registry
 from tactsim.case.json_schema import case_json_schema
 from tactsim.case.loading import load_case
 from tactsim.dataset.sampling.layout import layout_of
@@ -34,6 +35,7 @@ from tactsim.interfaces import (
     Recorder,
     ResultFigures,
     RigidBody,
+    Scene,
     SensorFilm,
 )
 from tactsim.interfaces.readings import Readings
@@ -45,8 +47,15 @@ from tactsim.registry import forget, kind_class, kinds
 from tactsim.results.result import Status
 from tactsim.shipped import CASES
 
-POINTS = (Material, RigidBody, ContactLaw, Inclusion, SensorFilm, Experiment, Estimator, Recorder, ResultFigures)
+POINTS = (Material, RigidBody, ContactLaw, Inclusion, SensorFilm, Experiment, Estimator, Recorder, ResultFigures, Scene)
 MODULES = {
+    Scene: """
+        from typing import Literal
+        from tactsim.results.scene import Scene
+        class Added(Scene):
+            kind: Literal["added"] = "added"
+            colour: str
+    """,
     Material: """
         from typing import Literal
         from tactsim.materials.neo_hookean import NeoHookean
@@ -355,6 +364,14 @@ def test_a_result_of_an_experiment_that_extends_another_is_the_same_when_it_is_l
         assert again == result
     finally:
         forget(Deeper)
+
+
+def test_all_points_stand_on_one_page() -> None:
+    """And each is tried here: a kind of it is added and removed."""
+    for base in POINTS:
+        kinds(base)
+    page = {base.__name__ for base in registry._registered if getattr(interfaces, base.__name__, None) is base}
+    assert {base.__name__ for base in registry._registered} == page == {base.__name__ for base in POINTS}
 
 
 @pytest.mark.parametrize("base", POINTS, ids=lambda base: base.__name__)

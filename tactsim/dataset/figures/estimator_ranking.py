@@ -28,7 +28,7 @@ BIN_SHARE, NOISE_APART = 0.5, 0.16
 """Part of a bin, and of a multiple of the noise, over which estimators stand beside each other, so that their intervals do not
 cover one another."""
 NOMINAL = (0.85, 0.95)
-"""Band in which the coverage of 90 % regions should lie: the plan of the display."""
+"""Band that is drawn behind the coverage: what a region that should hold 90 % of the centres may hold."""
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Style:
 
 
 ROWS = (
-    Measure("detection_rate", None, "part detected"),
+    Measure("detection_rate", None, "detection rate"),
     Measure("lateral_error", "median", "lateral error in mm"),
     Measure("depth_error", "median", "depth error in mm"),
     Measure("coverage", None, "coverage of 90 % regions"),
@@ -81,7 +81,7 @@ def ranking_figures(record: Mapping[str, Any]) -> dict[str, Drawing]:
 
 
 def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
-    """Part detected over the part of false alarms, by the threshold on the probability that anything is there.
+    """Detection rate over false-alarm rate, by the threshold on the probability that anything is there.
 
     A mark is what an estimator decides; one that states no probability has the mark alone.
     """
@@ -102,14 +102,14 @@ def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
                 label = f"{style.name}: area {np.trapezoid(detected, alarms):.3f}"
             mark: dict[str, Any] = {"color": style.colour, "marker": style.marker, "markersize": 6, "linestyle": ""}
             axis.plot(decided[~present].mean(), decided[present].mean(), label=label, clip_on=False, zorder=3, **mark)
-        axis.set(xlim=(-0.03, 1.03), ylim=(-0.03, 1.03), aspect="equal", xlabel="part of false alarms", ylabel="part detected")
+        axis.set(xlim=(-0.03, 1.03), ylim=(-0.03, 1.03), aspect="equal", xlabel="false-alarm rate", ylabel="detection rate")
         despined(axis)
         figure.legend(loc="outside lower center", fontsize=8)
     return figure
 
 
 def roc(probability: Array, present: Array) -> tuple[Array, Array]:
-    """Part of false alarms and part detected, each (n,) from 0 to 1, if all count as lumps whose probability (samples,) is at
+    """False-alarm and detection rate, each (n,) from 0 to 1, if all count as lumps whose probability (samples,) is at
     least each that occurs; equal ones are taken together.
 
     Source: T. Fawcett 2006, doi:10.1016/j.patrec.2005.10.010, algorithm 1.

@@ -48,7 +48,7 @@ def sweep(
 ) -> xarray.Dataset:
     """Compute a data set from an experiment in which some places vary, and open it.
 
-    An interruption keeps the samples that are done, and ends with a KeyboardInterrupt that says how to go on.
+    An interruption keeps the samples that are done.
 
     >>> import tactsim as ts
     >>> varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
@@ -77,6 +77,8 @@ def sweep(
         workers, or ``out`` is neither a path nor a text.
     StorageError
         If the place is taken or cannot be written.
+    KeyboardInterrupt
+        If it is interrupted; the message says what is kept and how to go on.
     """
     from tactsim.dataset.use.card import empty_split_lines
     from tactsim.dataset.use.counts import split_counts

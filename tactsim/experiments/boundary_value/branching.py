@@ -13,7 +13,7 @@ from tactsim.mechanics.paths.history_path import TimedState
 ROUND_OFF = 1e-9
 """Asymmetry of a tangent over its largest entry that counts as none."""
 LARGEST = 60_000
-"""Unknowns up to which a further factor costs little beside a path: 5 s of a block in space of 54 114."""
+"""Unknowns up to which a further factor costs little beside a path: 5 s of a block in 3D of 54 114."""
 
 
 def lowering_motions(model: LoadedBody, state: TimedState) -> int:

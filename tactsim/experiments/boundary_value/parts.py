@@ -127,7 +127,7 @@ class Parts:
         return inside, touched
 
     def _along(self, name: str, places: Array) -> Array:
-        """A coordinate in m of places (..., d); a round body in space or plane strain has the distance ``r`` from its axis, too.
+        """A coordinate in m of places (..., d); a round body in 3D or plane strain has the distance ``r`` from its axis, too.
 
         Raises
         ------

@@ -72,7 +72,7 @@ class BoundaryValueSetup(FrozenModel):
     """A body of a simple shape under what is prescribed on its faces, and the numbers that are asked of it."""
 
     dimension: Dimension
-    """A body in space, a long one in plane strain, or one of revolution about z."""
+    """A body in 3D, a long one in plane strain, or one of revolution about z."""
     geometry: AnyGeometry
     """Shape and mesh of the body."""
     material: AnyMaterial

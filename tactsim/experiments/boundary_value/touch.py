@@ -12,10 +12,7 @@ from tactsim.experiments.boundary_value.conditions import SIDES, ContactConditio
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.fem.assembly.space import SurfacePoints
 from tactsim.interfaces import RigidBody
-from tactsim.mechanics.contact.first_touch import first_touch
-
-FAR = 2.0
-"""Distance from which a rigid body approaches, over the body's size."""
+from tactsim.mechanics.contact.first_touch import FAR, first_touch
 
 
 @dataclass(frozen=True)

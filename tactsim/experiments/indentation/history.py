@@ -35,6 +35,6 @@ UNITS: dict[str, str] = {
 
 
 def history_units(*, clock: bool, space: bool) -> dict[str, str]:
-    """Units of the history of an indentation with or without a clock, in a section or in space."""
+    """Units of the history of an indentation with or without a clock, in a section or in 3D."""
     left = {*(() if clock else CLOCK), *(() if space else SPACE), *(("sensor_force",) if clock else ())}
     return {name: unit for name, unit in UNITS.items() if name not in left}

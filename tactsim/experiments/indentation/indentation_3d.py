@@ -1,4 +1,4 @@
-"""A rigid body pressed into tissue in space: the annulus off the axis and askew, up to the threshold of its inner sensor."""
+"""A rigid body pressed into tissue in 3D: the annulus off the axis and askew, up to the threshold of its inner sensor."""
 
 from __future__ import annotations
 
@@ -37,7 +37,7 @@ OBLIQUE_PENETRATION = 3e-4
 slip one by one: with a third of it a sensor that leans by 3 degrees on a thin layer does not come to its end in five minutes,
 with it in one. Multipliers instead of a stiff contact take half the time, but the force depends on the way to it by 7e-4 then."""
 FEW_ITERATIONS, MANY_ITERATIONS = 12, 20
-"""Steps grow up to so many iterations of Newton, and shrink beyond so many: friction in space takes more than in a section."""
+"""Steps grow up to so many iterations of Newton, and shrink beyond so many: friction in 3D takes more than in a section."""
 
 
 class MeshSettings3D(MeshSettings):
@@ -48,13 +48,13 @@ class MeshSettings3D(MeshSettings):
     growth: Annotated[float, Field(gt=0, le=2)] = 1.0
     """Growth of the element size per distance from the edges, dimensionless."""
     adaptive: Literal[False] = False
-    """Elements in space are not split on the way."""
+    """Elements in 3D are not split on the way."""
     sectors: Annotated[int, Field(ge=2, le=90)] = 2
     """Sectors in a quarter turn about the body's axis, each one quadratic element wide."""
 
 
 class Indentation3D(DisplacedSetup, Experiment):
-    """A rigid body pressed into a cylindrical specimen in space, its axis anywhere and leaning."""
+    """A rigid body pressed into a cylindrical specimen in 3D, its axis anywhere and leaning."""
 
     measure: ClassVar[Measure] = "solid"
     if_slow: ClassVar[str] = (
@@ -127,7 +127,7 @@ class Indentation3D(DisplacedSetup, Experiment):
         return replace(super().control(), few_iterations=FEW_ITERATIONS, many_iterations=MANY_ITERATIONS)
 
     def model(self) -> SolidModel:
-        """The finite element model in space, the body's axis at the origin of x and y."""
+        """The finite element model in 3D, the body's axis at the origin of x and y."""
         from tactsim.mechanics.models.solid_model import SolidModel
 
         section, symmetry = self.section(), self.symmetry

@@ -1,4 +1,4 @@
-"""An indentation, in the section or in space, without time or with it: geometry and tissue, the end, and the way there."""
+"""An indentation, in the section or in 3D, without time or with it: geometry and tissue, the end, and the way there."""
 
 from __future__ import annotations
 
@@ -141,7 +141,7 @@ class Indentation3dRecorder(DisplacedRecorder):
     """Those of an indentation in the section, and how the body leans."""
 
     kind: Literal["indentation_3d"] = "indentation_3d"
-    elements: ClassVar = "finite elements in space, as the body may lean"
+    elements: ClassVar = "finite elements in 3D, as the body may lean"
 
     def label_words(self) -> dict[str, tuple[str, str]]:
         """Unit and description of the labels."""

@@ -46,5 +46,6 @@ CHAPTER_5 = _curve()
 """Face of 2 mm, sides of 20 degrees, fillet 0.5 mm, friction 0.4, on an incompressible neo-Hookean block 40 mm wide and 20 mm
 high on a fixed base, in plane strain; strips of 0.2 mm at every mm of height.
 
-Source: computed with the finite elements of this package on the default mesh; a test computes it again.
+Source: computed with the finite elements of this package on the default mesh, by ``python benchmarks/probe_curve.py``. A test
+computes it again and compares: forces to 0.1 %, forces on the switch to 4e-3 mm, heights from a depth of 2 mm on to 0.02 mm.
 """

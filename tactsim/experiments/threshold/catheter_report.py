@@ -11,10 +11,10 @@ import numpy as np
 from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT
 from tactsim.array import Array
 from tactsim.experiments.threshold.catheter_case import CatheterCase
-from tactsim.experiments.threshold.report import RESOLUTION
 from tactsim.experiments.threshold.sampling import Trials
 from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.experiments.threshold.tip_contact import TipContact
+from tactsim.interfaces.readings import RESOLUTION
 from tactsim.interfaces.run import Findings
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.outcome.plausibility import oddities

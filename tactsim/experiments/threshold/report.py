@@ -11,6 +11,7 @@ from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
 from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.experiments.threshold.trial_case import TrialCase
+from tactsim.interfaces.readings import RESOLUTION
 from tactsim.interfaces.run import Findings
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
@@ -19,8 +20,6 @@ from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.threshold.threshold_trigger import ThresholdTrigger
 from tactsim.units import format_quantity
 
-RESOLUTION = 0.1
-"""Force in N that the sensor resolves; thesis, 3.1.2."""
 MOST_ROWS = 1500
 """Rows of the recording that is kept, at most about."""
 SIGNAL_UNITS = {

@@ -48,7 +48,7 @@ computes rows again; at 0.20, with friction 0.4, it is 0.175."""
 FLAT_OWN = 0.007
 """Part of these errors that sensors do not share: at one recess and friction the thicknesses and bases differ by up to 1.3 %."""
 BORDER_ERROR = 0.06
-"""Error of the mean by area at a border over the logarithm of the ratio of the two thresholds, at most: the linear model in space
+"""Error of the mean by area at a border over the logarithm of the ratio of the two thresholds, at most: the linear model in 3D
 differs by 2.4 % at a ratio of 2, 8.8 % at 6, and by 6.6 % at 3 where thickness and base change too. A test computes it again."""
 NEAR = 1.5
 """Distance of a sensor's axis from a border, in outer radii, up to which the border counts."""
@@ -92,9 +92,9 @@ class ClosedFormTip(FrozenModel):
 
 
 class FiniteElementTip(FrozenModel):
-    """Every tissue by axisymmetric finite elements at finite strain; borders by a linear model in space of each sensor.
+    """Every tissue by axisymmetric finite elements at finite strain; borders by a linear model in 3D of each sensor.
 
-    A sensor near a border has the mean of its tissues weighted by area, times what the model in space finds over that mean.
+    A sensor near a border has the mean of its tissues weighted by area, times what the model in 3D finds over that mean.
     """
 
     kind: Literal["fem"] = "fem"
@@ -152,7 +152,7 @@ class FiniteElementTip(FrozenModel):
             f"tissues by finite elements: neo-Hookean, surface {curved}, friction {self.friction:g}; sensors do not feel "
             "each other",
             "past the touch the small sensor is a solid punch on tissue of the last tangent stiffness",
-            "near a border: area's mean times what a linear model in space, flat and frictionless, finds over that mean",
+            "near a border: area's mean times what a linear model in 3D, flat and frictionless, finds over that mean",
         ]
 
     def _pressed(self, tissue: BandTissue, ring: SensorRing, speed: float) -> Indentation | TimedIndentation:
@@ -241,7 +241,7 @@ def border_errors(
 
 
 def border_factors(surface: ValveSurface, ring: SensorRing, place: tuple[float, float]) -> Array:
-    """Threshold force and displacement by the linear model in space over the means by area, shape (sensor, 2), 1 off borders.
+    """Threshold force and displacement by the linear model in 3D over the means by area, shape (sensor, 2), 1 off borders.
 
     Raises
     ------

@@ -85,5 +85,5 @@ class MirroredProblem(Problem):
 
 
 def free_problem(body: Body, options: NewtonOptions) -> Problem:
-    """A body in space without fixed unknowns, by the solver that suits it."""
+    """A body in 3D without fixed unknowns, by the solver that suits it."""
     return Problem(body, np.zeros(0, int), solver=solver_for(body), options=options)

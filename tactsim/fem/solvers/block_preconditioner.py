@@ -97,6 +97,8 @@ class BlockPreconditioned(IterativeSolver):
         ------
         ConvergenceError
             If the iteration does not reach it, as with a singular matrix.
+        InputError
+            If no matrix was factored.
         """
         if self._matrix is None:
             raise InputError("factor a matrix before solving")

@@ -77,8 +77,8 @@ class Pardiso:
 
         Raises
         ------
-        ConvergenceError
-            If it holds numbers that are not finite, or too large for single precision where that is asked.
+        ConvergenceError, OutOfMemory
+            If it holds numbers that are not finite, or too large for single precision where that is asked, or MKL fails.
         """
         self._take(matrix, ANALYSE_AND_FACTOR if self._system is None else FACTOR)
 

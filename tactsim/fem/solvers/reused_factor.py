@@ -1,6 +1,6 @@
 """Linear systems that change little: an old factor preconditions the next systems until it no longer pays.
 
-Factoring a sparse matrix of tissue in space costs as much as some twenty solutions with the factor. GMRES needs fewer than
+Factoring a sparse matrix of tissue in 3D costs as much as some twenty solutions with the factor. GMRES needs fewer than
 that while the tangent is near to the factored one. It is the flexible one, so that a factor in single precision will do. A factor
 is replaced once the solutions with it have cost as much as a new one: at worst twice what the best moments would cost.
 

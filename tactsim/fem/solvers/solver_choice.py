@@ -1,4 +1,4 @@
-"""Which linear solver a body in space gets: a factor that is reused, or an iteration where that costs less."""
+"""Which linear solver a body in 3D gets: a factor that is reused, or an iteration where that costs less."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def solver_for(body: Body) -> LinearSolver:
 
 
 def stiff_contact_solver(dim: int) -> LinearSolver:
-    """The solver of sections and of bodies in space under stiff contact, of some ten thousand unknowns."""
+    """The solver of sections and of bodies in 3D under stiff contact, of some ten thousand unknowns."""
     if not has_pardiso():
         return SuperLU()
     return section_factors() if dim == 2 else solid_factors()

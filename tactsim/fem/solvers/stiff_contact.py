@@ -1,4 +1,4 @@
-"""Linear systems under stiff contact: symmetric factors without friction, with it general ones or, in space, a reused one."""
+"""Linear systems under stiff contact: symmetric factors without friction, with it general ones or, in 3D, a reused one."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ without order: sections without friction have up to 1e-15."""
 EXACT = 1e-9
 """Largest residual of the first solution with a symmetric factor, over its right-hand side: 1e-15 where the pivots suffice."""
 WORTH, MOST = 12, 12
-"""Solutions that count as much as a new factor, and most with an old one for a system, under stiff contact in space."""
+"""Solutions that count as much as a new factor, and most with an old one for a system, under stiff contact in 3D."""
 LARGEST_ERROR = 1e-4
 """Error of a solution over its size, at most: with 1e-2, which suffices for softer contact, Newton does not find into a block
 that sticks to a plate."""
@@ -111,7 +111,7 @@ def section_factors() -> Relay:
 
 
 def solid_factors() -> Relay:
-    """Of a body in space: symmetric factors until one will not do; from then on one in single precision, of the part that
+    """Of a body in 3D: symmetric factors until one will not do; from then on one in single precision, of the part that
     friction does not couple, guides the iteration for as long as it pays; general factors where that fails.
 
     A factor costs more solutions than in a section: with friction `annulus_tilted_3d` takes two thirds of the time that general

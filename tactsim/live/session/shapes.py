@@ -1,4 +1,4 @@
-"""The true inclusions as the page draws them: triangles in space and outlines in the three views."""
+"""The true inclusions as the page draws them: triangles in 3D and outlines in the three views."""
 
 from __future__ import annotations
 

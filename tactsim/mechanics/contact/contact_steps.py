@@ -11,12 +11,11 @@ from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactIterate, ContactState, ContactTraction
 from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.mechanics.contact.first_touch import distance_to_touch
 from tactsim.mechanics.contact.posed_contact import PosedContact
 
-TOUCH = 1e-15
-"""Gap at touch over the size of what is touched: round-off."""
 MOST_APPROACHES = 100
-"""Steps of a free approach, each as long as the gap; where it ends earlier the rest counts as slip."""
+"""Steps of a free approach, each as long as the gap; where they end before touch the rest counts as slip."""
 
 
 def approached(
@@ -36,12 +35,11 @@ def approached(
         for contact, e in zip(contacts, directions, strict=True)
     ]
     size = max(float(np.abs(points).max()) for _, points, _ in bodies)
-    distance = 0.0
-    for _ in range(MOST_APPROACHES):
-        gap = min(float(body.signed_distance(points - distance * along)[0].min()) for body, points, along in bodies)
-        if gap <= TOUCH * size:
-            break
-        distance += gap
+
+    def gap_after(distance: float) -> float:
+        return min(float(body.signed_distance(points - distance * along)[0].min()) for body, points, along in bodies)
+
+    distance, _ = distance_to_touch(gap_after, size, MOST_APPROACHES)
     if distance == 0.0:
         return tuple(contacts), 0.0
     moved = []

@@ -1,4 +1,4 @@
-"""Places on quadratic triangles in space at which the height can be largest."""
+"""Places on quadratic triangles in 3D at which the height can be largest."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Finite element models: of a section, of tissue in space, of a block between jaws, of a body under prescribed loads."""
+"""Finite element models: of a section, of tissue in 3D, of a block between jaws, of a body under prescribed loads."""

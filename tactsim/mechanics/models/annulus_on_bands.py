@@ -1,4 +1,4 @@
-"""A flat rigid annulus on a layer whose modulus, thickness and base change from band to band: linear finite elements in space."""
+"""A flat rigid annulus on a layer whose modulus, thickness and base change from band to band: linear finite elements in 3D."""
 
 from __future__ import annotations
 

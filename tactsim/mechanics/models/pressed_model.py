@@ -1,4 +1,4 @@
-"""Tissue on a base with rigid bodies above it, in a section or in space: what both have in common."""
+"""Tissue on a base with rigid bodies above it, in a section or in 3D: what both have in common."""
 
 from __future__ import annotations
 
@@ -21,14 +21,11 @@ from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import ContactLaw, Material, RigidBody
 from tactsim.materials.mirrored import check_in_plane
 from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
-from tactsim.mechanics.contact.first_touch import first_touch
+from tactsim.mechanics.contact.first_touch import FAR, first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
-
-FAR = 2.0
-"""Height from which a body approaches, over the size of the tissue."""
 
 
 class PressedModel(ABC):

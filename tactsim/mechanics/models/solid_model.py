@@ -1,4 +1,4 @@
-"""The finite element model of tissue in space, or of a part of it between mirror planes."""
+"""The finite element model of tissue in 3D, or of a part of it between mirror planes."""
 
 from __future__ import annotations
 
@@ -19,11 +19,11 @@ from tactsim.mesh.revolved import SweepSymmetry
 from tactsim.results.result import FieldFrame
 
 PATIENCE = NewtonOptions(max_iterations=40, patience=12)
-"""Of contact in space, where friction settles slowly: the direction of slip is an unknown too."""
+"""Of contact in 3D, where friction settles slowly: the direction of slip is an unknown too."""
 
 
 class SolidModel(PressedModel):
-    """Tissue in space; the first body touches it at the origin of x and y, where the top is at z = 0.
+    """Tissue in 3D; the first body touches it at the origin of x and y, where the top is at z = 0.
 
     ``symmetry`` says which part of the body the mesh is.
     """

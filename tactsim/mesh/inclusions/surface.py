@@ -80,7 +80,7 @@ def read_surface(path: str) -> Triangles:
     StorageError
         If the file cannot be read or is damaged.
     InputError
-        If it holds anything other than triangles in space.
+        If it holds anything other than triangles in 3D.
     """
     return _read_surface(*_file(path))
 
@@ -110,7 +110,7 @@ def joined(points: Array, triangles: Array, name: str) -> Triangles:
     Raises
     ------
     InputError
-        If there are too many triangles, or they do not lie in space or collapse to a point.
+        If there are too many triangles, or they do not have three coordinates or collapse to a point.
     """
     if points.shape[1] != 3:
         raise InputError(f"{name}: the points have {points.shape[1]} coordinates; allowed: 3")

@@ -191,7 +191,7 @@ def images_figure(data: dict[str, Any]) -> Figure:
 
 
 def surfaces_figure(data: dict[str, Any]) -> Figure:
-    """A value over two axes, a panel in space for each surface."""
+    """A value over two axes, a panel in 3D for each surface."""
     panels = data["panels"]
     x, y = np.meshgrid(data["x"], data["y"])
     figure = new_figure(1.0 + 4.6 * len(panels), 4.6)

@@ -249,10 +249,10 @@ def tactile_pictures(
 
     Parameters
     ----------
-    pictures : front, left and top view, or the image in space cut at equal depths from the upper jaw to the lower
+    pictures : front, left and top view, or the 3D image cut at equal depths from the upper jaw to the lower
     reference : study of plain tissue, whose readings are taken off: without that, tissue under even jaws is all that is seen
     shape : rows and columns of each picture
-    layers : cuts of the image in space
+    layers : cuts of the 3D image
 
     Raises
     ------

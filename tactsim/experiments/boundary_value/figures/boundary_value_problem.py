@@ -38,7 +38,7 @@ from tactsim.units import format_quantity
 
 TITLE = "Boundary value problem"
 VIEW = np.array([0.55, -0.75, 0.40])
-"""Direction from a body in space to the eye."""
+"""Direction from a body in 3D to the eye."""
 RIGID_COLOUR, GRID = "#c8ccd2", 250
 """Of a rigid body, and the points per direction on which its outline is traced."""
 STRESSED, SPECK = 0.1, 0.15
@@ -196,7 +196,7 @@ def _areas_shown(axis: Axes, corners: Array) -> Array:
 
 
 def _framed(axis: Axes, dimension: str) -> None:
-    """Names the axes of a section; a body in space has none."""
+    """Names the axes of a section; a body in 3D has none."""
     axis.set_aspect("equal")
     if dimension == "3d":
         axis.set_axis_off()

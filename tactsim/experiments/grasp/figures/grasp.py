@@ -1,4 +1,4 @@
-"""Grasp: the pressure maps of both jaws, the section through the block, the course over time, and a view in space."""
+"""Grasp: the pressure maps of both jaws, the section through the block, the course over time, and a 3D view."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ PANEL_HEIGHT = 2.1
 
 
 class GraspFigures(ResultFigures):
-    """The maps first; the view in space last, as it alone needs a renderer."""
+    """The maps first; the 3D view last, as it alone needs a renderer."""
 
     kind: Literal["grasp"] = "grasp"
 

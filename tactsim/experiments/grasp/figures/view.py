@@ -1,4 +1,4 @@
-"""A grasp in space: translucent tissue, its inclusions, the jaws as thin plates and a bar for the pressure on every taxel."""
+"""A grasp in 3D: translucent tissue, its inclusions, the jaws as thin plates and a bar for the pressure on every taxel."""
 
 from __future__ import annotations
 

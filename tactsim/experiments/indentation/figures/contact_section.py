@@ -46,7 +46,7 @@ class PressedSection:
     sides : 1.0, and -1.0 too if the mirror image of the tissue is shown
     meshed : those of the sides on which elements are drawn
     turn : matrix (3, 3) from the axes of the body to those of the tissue; None for an axisymmetric section
-    along : horizontal axis of a section of tissue in space, 0 or 1
+    along : horizontal axis of a section of tissue in 3D, 0 or 1
     """
 
     section: Section

@@ -29,7 +29,7 @@ class Indentation3DFigures(PressedFigures):
         around = "pressure_around" in result.quantities and result.scene_as(Indentation3dScene).symmetry != "quarter"
         wide = bool(result.frames)
         size = (11.0 if wide else 6.0, 5.6 if around else 4.4)
-        with result_figure(result, size, "Indentation in space", where=after(result)) as figure:
+        with result_figure(result, size, "Indentation in 3D", where=after(result)) as figure:
             grid = figure.add_gridspec(1 + around, 1 + wide, width_ratios=(1.5, 1) if wide else None)
             if wide:
                 draw_cut(figure.add_subplot(grid[:, 0]), result)

@@ -1,4 +1,4 @@
-"""The cut of tissue in space under a rigid body: along x, or along y if it leans that way."""
+"""The cut of tissue in 3D under a rigid body: along x, or along y if it leans that way."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The figures of a localization: the three views and the view in space, with the true and the estimated inclusions."""
+"""The figures of a localization: the three views and the 3D view, with the true and the estimated inclusions."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tactsim.results import Result
 
 
 class LocalizationFigures(ResultFigures):
-    """The three views, and a view in space."""
+    """The three views, and a 3D view."""
 
     kind: Literal["localization"] = "localization"
 

@@ -1,4 +1,4 @@
-"""The estimated and the true inclusions in space, between the jaws with a bar for every taxel: the picture of thesis Fig. 6.8."""
+"""The estimated and the true inclusions in 3D, between the jaws with a bar for every taxel: the picture of thesis Fig. 6.8."""
 
 from __future__ import annotations
 
