@@ -68,7 +68,9 @@ def test_the_command_writes_a_failed_result(tmp_path: Path, capsys: pytest.Captu
     written = json.loads((out / "result.json").read_text(encoding="utf-8"))
     assert written["status"] == "failed"
     assert written["reason"].startswith("took longer than the 1 s that it was given")
-    assert capsys.readouterr().err == ""
+    reported = capsys.readouterr().err
+    assert "annulus_icf.yaml: failed: took longer than the 1 s that it was given" in reported
+    assert reported.count("\n") == 1
 
 
 @pytest.mark.parametrize(
