@@ -9,14 +9,17 @@ follows.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mesh.graded.beside_jaws import THINNER
+from tactsim.mesh.graded.lines import edge_thickness
 
 CELL_SHARE = 0.5
 """Thickness of cells at such an edge over its radius, at most.
@@ -36,29 +39,27 @@ overshoot (the case above with cells of 0.38 mm takes 101 s instead of 18 s), an
 def drawn_radius(experiment: GraspSetup) -> float:
     """Least radius in m of the rounded edges of jaws around which the closing draws the tissue, and cells can follow it; infinite
     if there is none."""
-    size, closing = np.array(experiment.block.size[:2]), _closing(experiment)
-    least = LEAST_OF_USUAL / CELL_SHARE * THINNER * _usual_thickness(experiment)
+    size, flats = experiment.block.size, experiment.flats
+    if not flats:
+        return math.inf
+    closing = _closing(experiment, flats)
+    least = LEAST_OF_USUAL / CELL_SHARE * THINNER * edge_thickness(GradedSource().settings(size, flats))
     radii = [
         experiment.jaw(side).fillet
-        for side, (low, high) in zip(JAWS, experiment.flats, strict=False)
-        if (low > 0).any() or (high < size).any()
+        for side, (low, high) in zip(JAWS, flats, strict=True)
+        if (low > 0).any() or (high < size[:2]).any()
     ]
     return min((radius for radius in radii if least <= radius < closing), default=math.inf)
 
 
-def _usual_thickness(experiment: GraspSetup) -> float:
-    """Of graded cells at the faces in m, where neither the case nor an edge says another."""
-    return GradedSource().settings(experiment.block.size, experiment.flats).edge_size or 0.0
-
-
-def _closing(experiment: GraspSetup) -> float:
+def _closing(experiment: GraspSetup, flats: Sequence[Array]) -> float:
     """Bound of the closing of each jaw in m: the prescribed one, or that of a relaxed column as wide as the smaller flat under
     the force; the tissue around it holds it back."""
     largest = experiment.loading.largest_displacement
-    if largest is not None or not experiment.flats:
-        return largest or 0.0
+    if largest is not None:
+        return largest
     modulus = 3 * shear_relaxation(experiment.block.tissue).equilibrium_modulus
-    area = min(float(np.prod(np.ptp(flat, axis=0))) for flat in experiment.flats)
+    area = min(float(np.prod(np.ptp(flat, axis=0))) for flat in flats)
     strain = experiment.loading.least_and_most()[1] / (modulus * area) if modulus * area > 0 else math.inf
     return strain * experiment.block.size[2] / 2
 
@@ -66,7 +67,7 @@ def _closing(experiment: GraspSetup) -> float:
 def following(source: GradedSource, experiment: GraspSetup) -> GradedSource:
     """The cells, so thin at the edges of jaws that they follow these, unless the case says how thin they are."""
     wanted = CELL_SHARE / THINNER * drawn_radius(experiment)
-    usual = source.settings(experiment.block.size, experiment.flats).edge_size
-    if source.edge_size is not None or usual is None or usual <= wanted:
+    usual = edge_thickness(source.settings(experiment.block.size, experiment.flats))
+    if source.edge_size is not None or usual <= wanted:
         return source
     return source.model_copy(update={"edge_size": wanted})

@@ -16,7 +16,7 @@ from tactsim.fem.equilibrium.balance import Equilibrium, point_displacements
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
-from tactsim.mechanics.contact.contact_steps import accepted, approached, augmented, begun_from, expected, grown, held, moved_on
+from tactsim.mechanics.contact.contact_steps import accepted, augmented, begun_from, expected, grown, held, moved_on, touching
 from tactsim.mechanics.contact.first_force import state_near
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.contact.snap_through import after_snap
@@ -106,7 +106,7 @@ def contact_equilibrium(
         If so, and an element of ``state`` is nearly inside out already.
     """
     if action.force is not None:
-        contacts, distance = approached(state.contacts, problem.body.space.split(state.unknowns)[0], action.directions)
+        contacts, distance = touching(state.contacts, problem.body.space.split(state.unknowns)[0], action.directions)
         state, load = replace(state, load=state.load + distance, contacts=contacts), load + distance
     try:
         return _equilibrium(problem, state, load, guess, action)

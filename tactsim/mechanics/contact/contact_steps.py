@@ -18,7 +18,7 @@ MOST_APPROACHES = 100
 """Steps of a free approach, each as long as the gap; where they end before touch the rest counts as slip."""
 
 
-def approached(
+def touching(
     contacts: Sequence[PosedContact], nodes: Array, directions: Sequence[Array]
 ) -> tuple[tuple[PosedContact, ...], float]:
     """Contacts of which none presses, moved on along their unit vectors until one touches, and by how many m.

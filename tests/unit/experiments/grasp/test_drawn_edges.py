@@ -74,3 +74,8 @@ def test_cells_and_contact_follow_such_an_edge():
 def test_what_a_case_says_of_the_cells_stays():
     experiment = grasp(mesh={"kind": "graded", "edge_size": "2 mm"})
     assert following(experiment.mesh, experiment) is experiment.mesh
+
+
+def test_contact_is_never_stiffer_than_its_tolerance_asks():
+    experiment = grasp(penetration_tolerance="50 um")
+    assert regularisation(experiment).softness == experiment.tolerance > SOFTNESS_SHARE * 1e-3
