@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from typing import Any, NoReturn
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.deadline import check_time
@@ -17,7 +16,7 @@ from tactsim.fem.equilibrium.balance import Balance, Equilibrium, ExternalForces
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.diagnosis import inside_out_in_words, not_finite_in_words
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
-from tactsim.fem.equilibrium.newton_step import Factored, NewtonStep, bordered
+from tactsim.fem.equilibrium.newton_step import Factored, NewtonStep, bordered, contact_system
 from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
 from tactsim.fem.solvers.linear import LinearSolver, finest_step, is_exact, resolved, solved
 from tactsim.fem.solvers.solver_choice import stiff_contact_solver
@@ -244,17 +243,10 @@ class _Solution:
         u, _ = body.space.split(state.unknowns)
         for load in self._forces.loads:
             load.add_stiffness(data, u)
-        matrix = body.pattern.matrix(constraints.apply(data))
-
-        def nearby() -> csr_matrix:
-            uncoupled = data.copy()
-            for interface, force in zip(interfaces, now, strict=True):
-                interface.surface.add_stiffness(uncoupled, -force.coupling)
-            return body.pattern.matrix(constraints.apply(uncoupled))
-
-        step = solved(solver, matrix, -constraints.free(self._residual(state, now)), accuracy, nearby)
+        system = contact_system(body.pattern, constraints, data, interfaces, now)
+        step = solved(solver, system, -constraints.free(self._residual(state, now)), accuracy)
         border = None if control is None else control.border([interface.surface for interface in interfaces], now)
-        along = None if border is None else resolved(solver, matrix, constraints.free(border.column), accuracy)
+        along = None if border is None else resolved(solver, system.matrix, constraints.free(border.column), accuracy)
         self.factored = Factored(along)
         return bordered(step, border, along)
 

@@ -2,10 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
+import numpy as np
+from scipy.sparse import csr_matrix
+
 from tactsim.array import Array
+from tactsim.fem.assembly.external_forces import AnyInterface, LinearisedContact
+from tactsim.fem.assembly.pattern import Pattern
+from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.prescribed_force import Border
+from tactsim.fem.solvers.linear import LinearSystem
 
 
 @dataclass(frozen=True)
@@ -29,3 +37,20 @@ def bordered(step: Array, border: Border | None, along: Array | None) -> NewtonS
         return NewtonStep(step, 0.0)
     rigid_displacement = border.displacement_step(step, along)
     return NewtonStep(step + rigid_displacement * along, rigid_displacement)
+
+
+def contact_system(
+    pattern: Pattern, constraints: Constraints, data: Array, interfaces: Sequence[AnyInterface], now: Sequence[LinearisedContact]
+) -> LinearSystem:
+    """The system of a tangent's entries, in which constraints are applied in place, and the linearised forces that are in it."""
+
+    def nearby() -> csr_matrix:
+        uncoupled = data.copy()
+        for interface, force in zip(interfaces, now, strict=True):
+            interface.surface.add_stiffness(uncoupled, -force.coupling)
+        return pattern.matrix(constraints.apply(uncoupled))
+
+    def surface() -> Array:
+        return np.unique(np.concatenate([interface.surface.unknowns.ravel() for interface in interfaces]))
+
+    return LinearSystem(pattern.matrix(constraints.apply(data)), nearby, surface if interfaces else None)

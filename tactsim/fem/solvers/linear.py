@@ -28,17 +28,35 @@ CAUSES = (
 """What to ask of a singular system."""
 
 
+EXACT = 1e-9
+"""Largest residual of the first solution with a factor that counts as exact, over its right-hand side: 1e-15 where the pivots
+suffice."""
+
+
 @dataclass(frozen=True)
 class LinearSystem:
-    """A ``matrix``, and a ``nearby`` one, nearly symmetric, whose factor preconditions it as well: made only where it is used."""
+    """A ``matrix``, and what helps to solve it, made only where it is used.
+
+    Attributes
+    ----------
+    matrix : of the system
+    make_nearby : makes a nearly symmetric one whose factor preconditions it as well
+    make_surface : makes the numbers (m,) of the unknowns at which contact may act
+    """
 
     matrix: csr_matrix
     make_nearby: Callable[[], csr_matrix] | None = None
+    make_surface: Callable[[], Array] | None = None
 
     @property
     def nearby(self) -> csr_matrix:
         """The nearby matrix, by default the matrix itself."""
         return self.matrix if self.make_nearby is None else self.make_nearby()
+
+    @property
+    def surface(self) -> Array:
+        """Numbers of the unknowns at which contact may act, by default none."""
+        return np.zeros(0, int) if self.make_surface is None else self.make_surface()
 
 
 class DirectSolver(Protocol):
@@ -131,16 +149,8 @@ class SuperLU:
         self._factor = None
 
 
-def solved(
-    solver: LinearSolver,
-    matrix: csr_matrix,
-    right: Array,
-    accuracy: float = 0.0,
-    nearby: Callable[[], csr_matrix] | None = None,
-) -> Array:
+def solved(solver: LinearSolver, system: LinearSystem | csr_matrix, right: Array, accuracy: float = 0.0) -> Array:
     """Checked solution (n,) of one linear system, to an error over its size of ``accuracy`` by an iterative solver.
-
-    ``nearby`` makes the nearby matrix of the `LinearSystem`.
 
     Neither solver reports a singular matrix reliably: both replace zero pivots and return huge numbers.
 
@@ -149,11 +159,12 @@ def solved(
     ConvergenceError
         If the matrix is singular and the right-hand side not in its range, or holds numbers that are not finite.
     """
+    system = system if isinstance(system, LinearSystem) else LinearSystem(system)
     if isinstance(solver, IterativeSolver):
-        solver.factor(LinearSystem(matrix, nearby))
+        solver.factor(system)
     else:
-        solver.factor(matrix)
-    return resolved(solver, matrix, right, accuracy)
+        solver.factor(system.matrix)
+    return resolved(solver, system.matrix, right, accuracy)
 
 
 def resolved(solver: LinearSolver, matrix: csr_matrix, right: Array, accuracy: float = 0.0) -> Array:

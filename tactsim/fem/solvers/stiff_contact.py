@@ -1,4 +1,4 @@
-"""Linear systems under stiff contact: symmetric factors without friction, with it general ones or, in 3D, a reused one."""
+"""Linear systems under stiff contact: symmetric factors without friction, with it condensed ones or, in 3D, a reused one."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
-from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem
+from tactsim.fem.solvers.condensed import CondensedFactors
+from tactsim.fem.solvers.linear import EXACT, IterativeSolver, LinearSystem
 from tactsim.fem.solvers.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
@@ -15,8 +16,6 @@ from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
 ASYMMETRY = 1e-12
 """Largest difference of x'(A y) and y'(A x), over the sum of the sizes of what is added, that is round-off, for vectors x and y
 without order: sections without friction have up to 1e-15."""
-EXACT = 1e-9
-"""Largest residual of the first solution with a symmetric factor, over its right-hand side: 1e-15 where the pivots suffice."""
 WORTH, MOST = 12, 12
 """Solutions that count as much as a new factor, and most with an old one for a system, under stiff contact in 3D."""
 LARGEST_ERROR = 1e-4
@@ -101,13 +100,14 @@ class SymmetricFactors(IterativeSolver):
 
 
 def section_factors() -> Relay:
-    """Of a section: symmetric factors until one will not do, which is with friction, from then on general ones.
+    """Of a section: symmetric factors until one will not do, which is with friction; from then on condensed ones, until friction
+    acts on too many unknowns or their pivots do not suffice; from then on general ones.
 
     Exact steps of Newton's are polished with the factor of the step before, so that `annulus_icf` takes 102 systems. A symmetric
     factor in single precision that is reused as the guide of GMRES takes 141 for the same states, 77 factors and 1 179 solutions:
     twice the time for the systems where a solution costs a fifth of a factor, as memory is slow.
     """
-    return Relay(SymmetricFactors(), GeneralFactors)
+    return Relay(SymmetricFactors(), CondensedFactors, GeneralFactors)
 
 
 def solid_factors() -> Relay:
