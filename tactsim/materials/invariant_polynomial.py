@@ -53,13 +53,12 @@ def powers_of(coefficients: Mapping[str, float]) -> dict[tuple[int, int], float]
 
 
 def monomial_derivative(I1: Array, I2: Array, power: tuple[int, int], order: tuple[int, int]) -> Array:
-    """The derivative of (I1 - 3)^i (I2 - 3)^j, ``order`` times (each at most 2) by I1 and I2, of the shape of the invariants."""
-    return _power_derivative(I1 - 3, power[0], order[0]) * _power_derivative(I2 - 3, power[1], order[1])
+    """The derivative of (I1 - 3)^i (I2 - 3)^j, ``order`` times (each at most 2) by I1 and I2; one number where it is constant."""
+    return np.asarray(_power_derivative(I1, power[0], order[0]) * _power_derivative(I2, power[1], order[1]))
 
 
-def _power_derivative(x: Array, power: int, order: int) -> Array:
-    """The derivative of ``x**power``, ``order`` <= 2 times."""
-    if power < order:
-        return np.zeros_like(x)
-    factor = float((1, power, power * (power - 1))[order])
-    return np.full_like(x, factor) if power == order else factor * x ** (power - order)
+def _power_derivative(invariant: Array, power: int, order: int) -> Array | float:
+    """The derivative of ``(invariant - 3)**power``, ``order`` <= 2 times."""
+    if power <= order:
+        return float((1, 1, 2)[order]) if power == order else 0.0
+    return float((1, power, power * (power - 1))[order]) * (invariant - 3) ** (power - order)

@@ -147,7 +147,7 @@ class Body:
         """
         slopes = np.zeros((5 if second else 2, *state.J.shape))
         for index, material in enumerate(self.materials):
-            mine = self.regions == index
+            mine = self.regions == index if len(self.materials) > 1 else slice(None)
             if self.forms[index] == "invariants":
                 values = material.energy_gradient(state.I1[mine], state.I2[mine])  # type: ignore[attr-defined]
                 if second:
