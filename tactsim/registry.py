@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import importlib
 import json
-import pkgutil
-import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cache
@@ -15,6 +13,7 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
 from tactsim.errors import AmbiguousKind, IncompleteKind, UnknownName
+from tactsim.kinds_in_source import kinds_in_source, module_names
 
 _registered: dict[type, dict[str, Any]] = {}
 """Extension point -> ``kind`` -> class; filled by `register`, which every concrete subclass calls as it is defined."""
@@ -123,6 +122,11 @@ def family(cls: Any) -> Any:
     return next(base for base in cls.__mro__ if "package" in vars(base))
 
 
+def kind_names(base: Any) -> list[str]:
+    """Kinds registered for an extension point, and those that the source of its modules names; loads none of these."""
+    return sorted({*_registered.get(base, {}), *kinds_in_source(module_names(base.package, base.modules), base.__name__)})
+
+
 def kinds(base: Any) -> dict[str, Any]:
     """``kind`` -> class of everything registered for an extension point, sorted by kind."""
     _load_all(base.package, base.modules)
@@ -130,7 +134,7 @@ def kinds(base: Any) -> dict[str, Any]:
 
 
 def kind_class(base: Any, kind: str) -> Any:
-    """The class registered as ``kind``; the other modules are only loaded if no module bears its name.
+    """The class registered as ``kind``; the other modules are only loaded if one of them names it and none bears its name.
 
     Raises
     ------
@@ -141,9 +145,9 @@ def kind_class(base: Any, kind: str) -> Any:
         _load_named(base, kind)
     if kind in _registered.get(base, {}):
         return _registered[base][kind]
-    known, what = kinds(base), f"{base.__name__.lower()} kind"
+    known, what = kind_names(base), f"{base.__name__.lower()} kind"
     if kind in known:
-        return known[kind]
+        return kinds(base)[kind]
     for cls in _below(base):
         if cls.__abstractmethods__ and cls.model_fields["kind"].default == kind:
             raise IncompleteKind(what, kind, cls)
@@ -156,26 +160,18 @@ def _below(base: Any) -> list[Any]:
 
 def _load_named(base: Any, kind: str) -> None:
     """Load the modules that bear the name of a kind, or else those beside a module that does, such as the figures of a kind."""
-    names = _module_names(base.package, base.modules)
+    names = module_names(base.package, base.modules)
     named = [name for name in names if name.rpartition(".")[2] == kind]
     if not named:
-        folders = {f"{name.rpartition('.')[0]}." for name in _module_names(base.package, ".*") if name.rpartition(".")[2] == kind}
+        folders = {f"{name.rpartition('.')[0]}." for name in module_names(base.package, ".*") if name.rpartition(".")[2] == kind}
         named = [name for name in names if any(name.startswith(folder) for folder in folders - {f"{base.package}."})]
     for name in named:
         importlib.import_module(name)
 
 
 @cache
-def _module_names(package: str, pattern: str) -> tuple[str, ...]:
-    """Full names of the modules of a package and its folders whose name within the package fits the pattern."""
-    root = importlib.import_module(package)
-    names = (module.name for module in pkgutil.walk_packages(root.__path__, f"{package}."))
-    return tuple(sorted(name for name in names if re.fullmatch(pattern, name.removeprefix(f"{package}."))))
-
-
-@cache
 def _load_all(package: str, pattern: str) -> None:
-    for name in _module_names(package, pattern):
+    for name in module_names(package, pattern):
         importlib.import_module(name)
 
 

@@ -13,15 +13,17 @@ from typing import Any
 from pydantic import ValidationError
 
 from tactsim.case.explaining import problems_of
-from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experiment_class, experiment_kinds
+from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experiment_class
 from tactsim.case.overrides import apply_override, set_value
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
 from tactsim.errors import CaseError, InputError, StorageError, UnknownName, shown, suggestion
+from tactsim.interfaces import Experiment
 from tactsim.model import plain
 from tactsim.outside.files import LIMITS, TooLarge, Unreadable, named_path, opened
 from tactsim.outside.text import one_line
 from tactsim.refusals import as_written, value_at
+from tactsim.registry import kind_names
 from tactsim.shipped import CASES, case_path, shipped_name
 
 LONGEST_MESSAGE = 2000
@@ -195,7 +197,7 @@ def _check_version(document: Document, place: Place) -> None:
 
 
 def _kind_problems(document: Document) -> list[Problem]:
-    """What is wrong with the kind of the experiment; the modules of the other kinds are loaded only to list them."""
+    """What is wrong with the kind of the experiment; no module of another kind is loaded to list them."""
     if "experiment" not in document.value:
         return []
     experiment = document.value["experiment"]
@@ -211,7 +213,7 @@ def _kind_problems(document: Document) -> list[Problem]:
                 return []
             unknown = ""
         except UnknownName:
-            unknown = suggestion(kind, experiment_kinds())
+            unknown = suggestion(kind, kind_names(Experiment))
         path, message = (*path, "kind"), f"unknown kind {as_written(kind)}{unknown}; {_choices()}"
     return [Problem(path, document.line(path), message)]
 
@@ -224,7 +226,7 @@ def _blamed_file(document: Document, message: str) -> Problem:
 
 
 def _choices() -> str:
-    return f"choices: {', '.join(experiment_kinds())}"
+    return f"choices: {', '.join(kind_names(Experiment))}"
 
 
 def place_in(path: str | Path, overridden: Mapping[KeyPath, str]) -> Place:

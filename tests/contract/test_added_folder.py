@@ -18,7 +18,7 @@ import pytest
 from sweeps import content, small_store
 
 import tactsim.experiments
-from tactsim import registry
+from tactsim import kinds_in_source, registry
 from tactsim.case.json_schema import case_json_schema
 from tactsim.cli.entry import main
 from tactsim.dataset.sampling.json_schema import sweep_json_schema
@@ -171,7 +171,8 @@ def start_anew() -> None:
     for name in [name for name in sys.modules if name.startswith(SPRING)]:
         del sys.modules[name]
     vars(tactsim.experiments).pop("spring", None)
-    registry._module_names.cache_clear()
+    kinds_in_source.module_names.cache_clear()
+    kinds_in_source.kinds_in_source.cache_clear()
     registry._load_all.cache_clear()
 
 
