@@ -437,6 +437,11 @@ def test_a_sample_is_picked(browser: webdriver.Chrome, tmp_path: Path) -> None:
         browser.find_element(By.ID, "next").click()
         until(lambda: shows(browser, 1.1 * forces))
         number = browser.find_element(By.ID, "number")
+        for refused in ("-3", "1.5", "10000", ""):  # the browser says why, and the picture stays
+            number.send_keys(Keys.CONTROL + "a", Keys.DELETE)
+            number.send_keys(refused, Keys.ENTER)
+            assert not browser.execute_script("return arguments[0].checkValidity()", number)
+        assert shows(browser, 1.1 * forces)
         number.send_keys(Keys.CONTROL + "a")
         number.send_keys("4", Keys.ENTER)
         until(lambda: "sample 4 is failed: ConvergenceError: residual <i>1</i>" in words(browser, "alerts"))

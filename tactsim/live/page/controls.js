@@ -22,7 +22,7 @@ export class Controls {
     get("slider").addEventListener("input", (event) => send({ do: "show", step: Number(event.target.value) }));
     get("previous").addEventListener("click", () => send({ do: "sample", move: -1 }));
     get("next").addEventListener("click", () => send({ do: "sample", move: 1 }));
-    get("number").addEventListener("change", (event) => send({ do: "sample", number: Number(event.target.value) }));
+    get("number").addEventListener("change", ({ target }) => target.reportValidity() && send({ do: "sample", number: Number(target.value) }));
     for (const id of ["split", "status"]) get(id).addEventListener("change", () => this.#filter());
     for (const button of document.querySelectorAll("[data-turn]")) {
       button.addEventListener("click", () => turn(button.dataset.turn));
