@@ -5,11 +5,14 @@ Mutants: nominal stress, taxels without the gaps between them, half the force, w
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 from mutants import assert_kills
 from solids import box, facets_where, on_plane
 
+import tactsim as ts
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
@@ -27,6 +30,8 @@ HARD = MooneyRivlin2(c10=8000.0, c01=2000.0)
 LAYOUT = TaxelLayout(rows=2, columns=3, pitch=10e-3, size=8e-3)
 SCALE = Augmentation(1e-6, RUBBER.shear_modulus, switch_length=1e-3, softness=5e-5)
 WIDE = {"width": 0.08, "depth": 0.08, "fillet": 1e-3}
+MORE = 1.15
+"""Friction of a wedge that is held over the least."""
 
 
 def grasped(*, friction, closing=1e-3, steps=4, lump=None, cells=(6, 4, 3), jaw=WIDE):
@@ -181,3 +186,30 @@ def test_free_faces_roll_onto_the_jaws_instead_of_passing_beside_them():
 @pytest.mark.parametrize("closing", [0.8e-3, 0.85e-3])
 def test_without_contact_on_the_free_faces_they_would_pass_the_jaw(closing):
     assert beyond_the_jaw(("upper", "lower"), closing=closing) > 3 * PASSING
+
+
+@pytest.mark.slow  # half a minute
+def test_a_wedge_is_held_by_friction_above_half_its_angle_only(verification_record, monkeypatch):
+    """Two forces in balance lie on one line: each leans from its face by half the angle between the faces."""
+    monkeypatch.setattr("tactsim.experiments.grasp.setup.sliding_out", lambda *_: None)
+    half = math.radians(2.0)
+    settings = {"kind": "grasp", "block": {"size": ["20 mm", "20 mm", "10 mm"], "tissue": "icf_stable"}}
+    settings |= {"upper": {"width": "30 mm", "depth": "30 mm", "tilt_y": "4 deg"}, "lower": {"width": "30 mm", "depth": "30 mm"}}
+    settings |= {"matrix": {"rows": 2, "columns": 2, "pitch": "6 mm", "size": "5 mm"}, "mesh": {"kind": "graded", "size": "5 mm"}}
+    settings["loading"] = {"control": "displacement", "pieces": [{"kind": "ramp", "to": "1 mm", "duration": "1 s"}]}
+
+    def result(friction):
+        law = {"contact": {"kind": "coulomb", "friction": friction}}
+        return ts.load_case({"schema": "tactsim/case/1", "title": "wedge", "experiment": settings | law}).run()
+
+    slid, held = result(math.tan(half) / MORE), result(MORE * math.tan(half))
+    assert slid.status == "failed"
+    assert held.status == "converged"
+    along, _, across = held["jaw_force_lower"].value
+    lean = math.degrees(math.atan(abs(along / across)))
+    known = {"reference": "two forces in balance", "kind": "exact", "mesh": "graded, cells of 5 mm", "tolerance": MORE - 1}
+    verification_record(
+        "angle of the force on the level jaw of a wedge of 4 degrees, friction 1.15 tan 2 degrees", lean, 2.0, **known
+    )
+    most = math.degrees(math.atan(MORE * math.tan(half)))
+    assert 4.0 - most <= lean <= most  # neither jaw's force leaves the cone of friction

@@ -15,6 +15,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.errors import InvalidQuantity, Refused
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
+from tactsim.experiments.grasp.wedge import sliding_out
 from tactsim.interfaces import Inclusion, Material
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
@@ -221,6 +222,12 @@ class GraspSetup(FrozenModel):
                 if needed > extent * (1 + 1e-12):
                     wide, has = format_quantity(needed, "m"), format_quantity(extent, "m")
                     raise ValueError(f"matrix: {wide} wide, more than {side}.{name} {has}; take a smaller pitch or a larger jaw")
+        return self
+
+    @model_validator(mode="after")
+    def _held(self) -> Self:
+        if not self.flats and (sliding := sliding_out(self.jaw("upper"), self.jaw("lower"), self.contact)) is not None:
+            raise ValueError(f"contact: {sliding}")
         return self
 
     @model_validator(mode="after")
