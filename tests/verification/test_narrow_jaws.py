@@ -5,6 +5,7 @@ Mutants: cells without lines at the edges of the jaws, cells that no plane mirro
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,14 @@ FINE = np.array([[77.226, 76.596, 77.226], [76.596, 78.849, 76.596], [77.226, 76
 58 140 unknowns, cells at the edges half as thick again, differ by 0.35 %."""
 CONVERGED = 4e-3
 """Difference allowed of the finer of two meshes, of which the finest differs by less."""
+DRAWN, DRAWN_REACTION = (
+    np.array([[278.209, 271.271, 278.209], [271.271, 289.782, 271.271], [278.209, 271.271, 278.209]]) * 1e-3,
+    6.370,
+)
+"""Forces in N on the taxels of jaws around whose edges the tissue is drawn, and of the whole jaw, by 295 278 unknowns: ``{kind:
+graded, size: 4 mm, edge_size: 0.333 mm}``."""
+DRAWN_SHARE = 1e-2
+"""Difference allowed there: 0.92 % of the taxel in the middle was found."""
 SMALLER = {"width": 24e-3, "depth": 24e-3, "fillet": 2e-3}
 TINY = {"width": 8e-3, "depth": 8e-3, "fillet": 0.7e-3}
 FINE_TINY, FINE_TINY_REACTION = np.full((2, 2), 6.9578e-3), 0.124050
@@ -116,3 +125,31 @@ def test_cells_at_the_edges_of_tiny_jaws_are_as_thin_as_these_ask(verification_r
 def test_a_finer_mesh_reads_the_same():
     forces = pressed({"kind": "graded", "size": 4e-3, "edge_size": 1.467e-3, "growth": 0.8})
     assert np.abs(forces - FINE).max() < CONVERGED * FINE.max()
+
+
+def drawn_around_the_edges() -> Result:
+    """Jaws of half the block's sides, closed by two and a half times the radius of their edges, at little friction."""
+    jaw = {"width": 30e-3, "depth": 30e-3, "fillet": 1e-3}
+    return Grasp.model_validate(
+        {
+            "block": {"size": (60e-3, 60e-3, 30e-3), "tissue": "icf_stable"},
+            "upper": jaw,
+            "lower": jaw,
+            "matrix": {"rows": 3, "columns": 3, "pitch": 8e-3, "size": 7e-3},
+            "contact": {"kind": "coulomb", "friction": 0.2},
+            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 2.5e-3, "duration": 1.0}]},
+        }
+    ).run()
+
+
+@pytest.mark.slow
+def test_tissue_is_drawn_around_the_edges_of_jaws(verification_record, monkeypatch):
+    result = drawn_around_the_edges()
+    assert result.status == "converged"
+    assert np.abs(forces_of(result) - DRAWN).max() < DRAWN_SHARE * DRAWN.max()
+    assert result.quantities["reaction_force"].value == pytest.approx(DRAWN_REACTION, rel=CONVERGED)
+    known = {"reference": "295 278 unknowns", "kind": "invariance", "mesh": "default, 110 754 unknowns", "tolerance": DRAWN_SHARE}
+    verification_record("taxels of jaws around whose edges tissue is drawn", forces_of(result), np.stack([DRAWN, DRAWN]), **known)
+    for module in ("drawn_edges", "path"):  # the mutant: cells and contact of jaws around which nothing is drawn
+        monkeypatch.setattr(f"tactsim.experiments.grasp.{module}.drawn_radius", lambda _: math.inf)
+    assert drawn_around_the_edges().status == "failed"
