@@ -108,7 +108,7 @@ class IndentationSetup(FrozenModel):
     """Friction between body and tissue."""
     recess: Positive[Length] | None = None
     """Depth L of the inner sensor below the face of an annulus: the tissue touches it when it has risen by L."""
-    penetration_tolerance: Annotated[Length, Field(ge=1e-10)] | None = None
+    penetration_tolerance: Annotated[Length, Field(ge=1e-12)] | None = None
     """Largest penetration at any surface quadrature point; by default 1e-4 of the radius of the body, or of a narrower specimen,
     3e-4 where a body in 3D leans or is off the axis, at most 2e-3 of a prescribed displacement. At most a tenth of that
     displacement, of the contact's width, of a fillet and of the thinnest layer."""

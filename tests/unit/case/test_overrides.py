@@ -85,7 +85,7 @@ def test_a_part_of_a_default_can_be_set(tmp_path):
     assert changed.contact == plain.contact.model_copy(update={"friction": 0.2})
     with pytest.raises(CaseError, match=r"--set experiment.contact.friction: -0.1 is out of range"):
         load_case(path, ["experiment.contact.friction=-0.1"])
-    with pytest.raises(CaseError, match=r"penetration_tolerance: '1e-30 m' is out of range; must be at least 100 pm"):
+    with pytest.raises(CaseError, match=r"penetration_tolerance: '1e-30 m' is out of range; must be at least 1 pm"):
         load_case(path, ["experiment.penetration_tolerance=1e-30 m"])  # the unit of a value that may be left out
     with pytest.raises(CaseError, match=r"unknown key \(did you mean 'friction'"):
         load_case(path, ["experiment.contact.fricton=0.1"])
