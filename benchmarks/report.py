@@ -16,6 +16,7 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
+import accuracy
 import against
 import assembly
 import commands
@@ -42,6 +43,7 @@ PARTS = {
     for part in (
         commands,
         against,
+        accuracy,
         grasp,
         taxels,
         assembly,
@@ -57,8 +59,8 @@ PARTS = {
     )
 }
 """Modules with ``measure`` and ``rows``, in the order of the table."""
-LONG = ("validate", "scale", "peers")
-"""Eight minutes, half an hour, and one to two hours with every other program installed."""
+LONG = ("accuracy", "validate", "scale", "peers")
+"""Four minutes, eight, half an hour, and one to two hours with every other program installed."""
 Measurement = dict[str, Any]
 """The ``figures`` of a part, and of what they are."""
 

@@ -31,69 +31,82 @@ from tactsim.fem.solvers.pardiso_binding import (
 )
 
 SKEW = 1e-12
-"""Skew part of an entry that is round-off, over the geometric mean of the diagonal entries in its row and its column."""
+"""Skew part of an entry that is round-off, after its row and its column have been scaled."""
 MARGIN = 6
 """Facets of the surface by which the unknowns that are left out reach beyond those where friction acts, as the contact will grow:
 a new choice costs an analysis, as much as two factors. Two choices serve `annulus_icf`."""
-MOST_KEPT = 4.0
+MOST_LEFT_OUT = 4.0
 """Most unknowns that are left out, over the root of the number of all: with 438 of 7 976 a system costs as much as by a general
 factor, with 190 two thirds of it."""
 
 
 class CondensedPardiso(SymmetricPardiso):
-    """MKL Pardiso: the symmetric factor of all unknowns but some, and the Schur complement of these.
+    """MKL Pardiso: the symmetric factor of all unknowns but some, and a dense general one of their Schur complement.
 
     Pardiso neither scales nor matches then, so that the matrix comes scaled, or else residuals in a section are 4e-10 of the
-    right-hand side instead of 3e-15.
+    right-hand side instead of 3e-15. In one of 7 976 unknowns of which 168 are left out, a factor takes 10.7 ms and a solution
+    2.0 ms; a general factor takes 16.5 ms and a solution 2.4 ms.
 
     Parameters
     ----------
-    kept : numbers (m,) of the unknowns that are left out, rising
+    left_out : numbers (m,) of unknowns, rising; only between these may the matrix be unsymmetric
     scale : (n,) factors of the rows and columns
     """
 
     name = "pardiso_condensed"
 
-    def __init__(self, kept: Array, scale: Array) -> None:
+    def __init__(self, left_out: Array, scale: Array) -> None:
         super().__init__()
-        self._kept, self._scale = kept, scale
-        self.complement = np.zeros((0, 0))
-        """Schur complement (m, m) of the symmetric part of the last scaled matrix."""
+        self._left_out, self._scale = left_out, scale
+        self._place = np.full(len(scale), -1)
+        self._place[left_out] = np.arange(len(left_out))
+        self._dense: Any = None
         self._solver.iparm[SCALING] = self._solver.iparm[MATCHING] = 0
         self._solver.iparm[SCHUR] = 2
-        self._solver.perm = np.zeros(len(scale), np.int32)
-        self._solver.perm[kept] = 1
+        self._solver.perm = (self._place >= 0).astype(np.int32)
+
+    def leaves_out(self, unknowns: Array) -> bool:
+        """Whether all unknowns, by their numbers (k,), are among those that are left out."""
+        return bool((self._place[unknowns] >= 0).all())
 
     def factor(self, matrix: csr_matrix) -> None:
-        """Factor the matrix, and make the complement; analyses the pattern on the first call."""
-        upper = np.zeros((len(self._kept), len(self._kept)))
+        """Factor the matrix; analyses the pattern on the first call."""
+        upper = np.zeros((len(self._left_out), len(self._left_out)))
         self._take(matrix, ANALYSE_AND_FACTOR if self._system is None else FACTOR, upper)
-        self.complement = np.triu(upper) + np.triu(upper, 1).T
+        complement = np.triu(upper) + np.triu(upper, 1).T
+        half, between = self._half, self._between
+        skew = half.skew(matrix.data, between) * self._scale[half.rows[between]] * self._scale[half.columns[between]]
+        rows, columns = self._place[half.rows[between]], self._place[half.columns[between]]
+        complement[rows, columns] += skew
+        complement[columns, rows] -= skew
+        self._dense = lu_factor(complement, overwrite_a=True, check_finite=False)
+
+    def solve(self, right: Array) -> Array:
+        """Solution for one right-hand side (n,).
+
+        Raises
+        ------
+        InputError
+            If no matrix was factored.
+        """
+        if self._system is None:
+            raise InputError("factor a matrix before solving")
+        reduced = call_pardiso(self._solver, FORWARD, self._system, self._scale * right)
+        reduced[self._left_out] = lu_solve(self._dense, reduced[self._left_out], check_finite=False)
+        return self._scale * call_pardiso(self._solver, BACKWARD, self._system, reduced)
+
+    def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
+        structure = super()._structure(matrix)
+        self._between = np.flatnonzero((self._place[self._half.rows] >= 0) & (self._place[self._half.columns] >= 0))
+        return structure
 
     def _entries(self, matrix: csr_matrix) -> Array:
         return super()._entries(matrix) * self._scale[self._half.rows] * self._scale[self._half.columns]
 
-    def forward(self, right: Array) -> Array:
-        """The right-hand side (n,) after the first substitution: at the unknowns left out, that of the complement."""
-        return call_pardiso(self._solver, FORWARD, self._taken, self._scale * right)
-
-    def backward(self, reduced: Array) -> Array:
-        """The solution (n,), given ``reduced`` from the first substitution with the scaled unknowns left out solved."""
-        return self._scale * call_pardiso(self._solver, BACKWARD, self._taken, reduced)
-
-    @property
-    def _taken(self) -> tuple[Array, Array, Array]:
-        if self._system is None:
-            raise InputError("factor a matrix before solving")
-        return self._system
-
 
 class CondensedFactors(IterativeSolver):
-    """A symmetric factor of each system without the unknowns that friction makes unsymmetric, and a dense one of these.
-
-    In a section of 7 976 unknowns of which 168 are left out, a factor takes 10.7 ms and a solution 2.0 ms; a general factor takes
-    16.5 ms and a solution 2.4 ms.
-    """
+    """A condensed factor of each system; a solution fails where friction acts on no unknown or on too many, or a factor is not
+    exact."""
 
     name = CondensedPardiso.name
     exact = True
@@ -101,9 +114,7 @@ class CondensedFactors(IterativeSolver):
     def __init__(self) -> None:
         self._half: UpperHalf | None = None
         self._scale, self._sizes = np.zeros(0), np.zeros(0)
-        self._kept, self._place = np.zeros(0, int), np.zeros(0, int)
         self._direct: CondensedPardiso | None = None
-        self._dense: Any = None
         self._unchecked: csr_matrix | None = None
 
     def factor(self, system: LinearSystem) -> None:
@@ -114,16 +125,12 @@ class CondensedFactors(IterativeSolver):
             self._sizes = self._scale[self._half.rows] * self._scale[self._half.columns]
         skew = self._half.skew(matrix.data) * self._sizes
         there = np.flatnonzero(~(np.abs(skew) <= SKEW))
-        rows, columns = self._half.rows[there], self._half.columns[there]
-        if self._direct is None or (self._place[rows] < 0).any() or (self._place[columns] < 0).any():
-            self._leave_out(np.union1d(rows, columns), system)
-        if self._direct is None:
-            return
-        self._direct.factor(matrix)
-        dense, rows, columns = self._direct.complement.copy(), self._place[rows], self._place[columns]
-        dense[rows, columns] += skew[there]
-        dense[columns, rows] -= skew[there]
-        self._dense, self._unchecked = lu_factor(dense, overwrite_a=True, check_finite=False), matrix
+        touched = np.union1d(self._half.rows[there], self._half.columns[there])
+        if self._direct is None or not self._direct.leaves_out(touched):
+            self._choose(touched, system)
+        if self._direct is not None:
+            self._direct.factor(matrix)
+            self._unchecked = matrix
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Exact solution for one right-hand side (n,) of the last system.
@@ -138,10 +145,8 @@ class CondensedFactors(IterativeSolver):
         if self._half is None:
             raise InputError("factor a matrix before solving")
         if self._direct is None:
-            raise ConvergenceError(f"friction acts on {len(self._kept)} of {len(self._scale)} unknowns")
-        reduced = self._direct.forward(right)
-        reduced[self._kept] = lu_solve(self._dense, reduced[self._kept], check_finite=False)
-        solution, matrix, self._unchecked = self._direct.backward(reduced), self._unchecked, None
+            raise ConvergenceError("friction acts on no unknown, or on too many")
+        solution, matrix, self._unchecked = self._direct.solve(right), self._unchecked, None
         if matrix is not None and not np.abs(matrix @ solution - right).max() <= EXACT * np.abs(right).max():
             raise ConvergenceError("the pivots of the condensed factor do not suffice")
         return solution
@@ -150,24 +155,21 @@ class CondensedFactors(IterativeSolver):
         """Release the factor's memory; the next matrix may have another pattern."""
         if self._direct is not None:
             self._direct.close()
-        self._direct = self._half = self._dense = self._unchecked = None
+        self._direct = self._half = self._unchecked = None
 
-    def _leave_out(self, touched: Array, system: LinearSystem) -> None:
-        """Choose anew what is left out of the factor, which is what friction touches and the surface beside it."""
-        size = system.matrix.shape[0]
-        left_out = np.zeros(size, bool)
-        left_out[touched] = True
-        surface = system.surface
-        beside = system.matrix[surface][:, surface] != 0
-        for _ in range(MARGIN):
-            left_out[surface] |= beside @ left_out[surface]
-        self._kept = np.flatnonzero(left_out)
-        self._place = np.full(size, -1)
-        self._place[self._kept] = np.arange(len(self._kept))
+    def _choose(self, touched: Array, system: LinearSystem) -> None:
+        """Choose anew what is left out of the factor: what friction touches, and the surface beside it."""
         if self._direct is not None:
             self._direct.close()
-        worth = 0 < len(self._kept) <= MOST_KEPT * np.sqrt(size)
-        self._direct = CondensedPardiso(self._kept, self._scale) if worth else None
+        size, surface = system.matrix.shape[0], system.surface
+        chosen = np.zeros(size, bool)
+        chosen[touched] = True
+        beside = system.matrix[surface][:, surface] != 0
+        for _ in range(MARGIN):
+            chosen[surface] |= beside @ chosen[surface]
+        left_out = np.flatnonzero(chosen)
+        worth = 0 < len(left_out) <= MOST_LEFT_OUT * np.sqrt(size)
+        self._direct = CondensedPardiso(left_out, self._scale) if worth else None
 
 
 def scales(matrix: csr_matrix) -> Array:

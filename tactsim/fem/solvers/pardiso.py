@@ -151,9 +151,9 @@ class UpperHalf:
         """Entries (k,) of the symmetric part of the matrix with the entries ``data``."""
         return (data[self.upper] + data[self.mirror]) / 2
 
-    def skew(self, data: Array) -> Array:
-        """Entries (k,) of its skew part."""
-        return (data[self.upper] - data[self.mirror]) / 2
+    def skew(self, data: Array, some: Array | slice = slice(None)) -> Array:
+        """Entries (k,) of its skew part, or ``some`` of them."""
+        return (data[self.upper[some]] - data[self.mirror[some]]) / 2
 
 
 class SymmetricPardiso(Pardiso):
