@@ -17,7 +17,7 @@ from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.fem.solvers.linear import EXACT, IterativeSolver, LinearSystem
+from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem, solves
 from tactsim.fem.solvers.pardiso import SymmetricPardiso, UpperHalf
 from tactsim.fem.solvers.pardiso_binding import (
     ANALYSE_AND_FACTOR,
@@ -147,7 +147,7 @@ class CondensedFactors(IterativeSolver):
         if self._direct is None:
             raise ConvergenceError("friction acts on no unknown, or on too many")
         solution, matrix, self._unchecked = self._direct.solve(right), self._unchecked, None
-        if matrix is not None and not np.abs(matrix @ solution - right).max() <= EXACT * np.abs(right).max():
+        if matrix is not None and not solves(matrix, solution, right):
             raise ConvergenceError("the pivots of the condensed factor do not suffice")
         return solution
 

@@ -99,6 +99,11 @@ class IterativeSolver(ABC):
 LinearSolver = DirectSolver | IterativeSolver
 
 
+def solves(matrix: csr_matrix, solution: Array, right: Array) -> bool:
+    """Whether a solution (n,) of a right-hand side (n,) is as exact as a factor with sufficient pivots makes it."""
+    return bool(np.abs(matrix @ solution - right).max() <= EXACT * np.abs(right).max())
+
+
 def is_exact(solver: LinearSolver) -> bool:
     """Whether its solutions are exact ones of the last system, by a factor that it keeps."""
     return not isinstance(solver, IterativeSolver) or solver.exact

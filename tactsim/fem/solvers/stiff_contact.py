@@ -8,7 +8,7 @@ from scipy.sparse import csr_matrix
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.solvers.condensed import CondensedFactors
-from tactsim.fem.solvers.linear import EXACT, IterativeSolver, LinearSystem
+from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem, solves
 from tactsim.fem.solvers.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
@@ -79,7 +79,7 @@ class SymmetricFactors(IterativeSolver):
         if not self._symmetric:
             raise ConvergenceError("the matrix is not symmetric")
         solution, matrix, self._unchecked = self._direct.solve(right), self._unchecked, None
-        if matrix is not None and not np.abs(matrix @ solution - right).max() <= EXACT * np.abs(right).max():
+        if matrix is not None and not solves(matrix, solution, right):
             raise ConvergenceError("the pivots of the symmetric factor do not suffice")
         return solution
 
