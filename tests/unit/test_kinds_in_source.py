@@ -5,10 +5,12 @@ from __future__ import annotations
 import subprocess
 import sys
 from pathlib import Path
+from typing import Literal
 
 import pytest
 
-from tactsim import interfaces
+from tactsim import interfaces, registry
+from tactsim.errors import IncompleteKind
 from tactsim.kinds_in_source import kinds_in_source
 from tactsim.registry import kind_names, kinds
 
@@ -44,6 +46,17 @@ def test_only_classes_that_extend_the_base_count(tmp_path: Path, monkeypatch: py
     assert kinds_in_source(names, "Model") == {"other"}
     assert kinds_in_source(names[:1], "Base") == {"ball"}
     assert not {f"source_of_{name}" for name in MODULES} & set(sys.modules)
+
+
+def test_a_class_in_the_package_that_lacks_methods_is_named_with_them(monkeypatch: pytest.MonkeyPatch):
+    class HalfMade(interfaces.ContactLaw):
+        kind: Literal["half_made"] = "half_made"
+
+    monkeypatch.setattr(registry, "kinds_in_source", lambda *_: frozenset({"half_made"}))
+    with pytest.raises(
+        IncompleteKind, match=r"'half_made': its class .*HalfMade lacks example, traction_limit, traction_limit_slope"
+    ):
+        registry.kind_class(interfaces.ContactLaw, "half_made")
 
 
 def test_a_misspelt_kind_loads_no_other(tmp_path: Path):

@@ -9,6 +9,7 @@ Source: Haynsworth 1968, doi:10.1016/0024-3795(68)90050-5 (the complement); oneM
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -40,6 +41,36 @@ MOST_LEFT_OUT = 4.0
 factor, with 190 two thirds of it."""
 
 
+@dataclass(frozen=True)
+class ScaledHalf:
+    """Entries on and above the diagonal of matrices of one pattern, scaled.
+
+    Attributes
+    ----------
+    half : where they stand
+    scale : (n,) factors of the rows and columns
+    sizes : (k,) those of the entries
+    """
+
+    half: UpperHalf
+    scale: Array
+    sizes: Array
+
+    @classmethod
+    def of(cls, matrix: csr_matrix) -> ScaledHalf:
+        """By the entries of this matrix."""
+        half, scale = UpperHalf.of(matrix), scales(matrix)
+        return cls(half, scale, scale[half.rows] * scale[half.columns])
+
+    def symmetric(self, matrix: csr_matrix) -> Array:
+        """Entries (k,) of the symmetric part."""
+        return self.half.symmetric(matrix.data) * self.sizes
+
+    def skew(self, matrix: csr_matrix, some: Array | slice = slice(None)) -> Array:
+        """Entries (k,) of the skew part, or ``some`` of them."""
+        return self.half.skew(matrix.data, some) * self.sizes[some]
+
+
 class CondensedPardiso(SymmetricPardiso):
     """MKL Pardiso: the symmetric factor of all unknowns but some, and a dense general one of their Schur complement.
 
@@ -49,17 +80,20 @@ class CondensedPardiso(SymmetricPardiso):
 
     Parameters
     ----------
-    left_out : numbers (m,) of unknowns, rising; only between these may the matrix be unsymmetric
-    scale : (n,) factors of the rows and columns
+    scaled : the pattern of the matrices, and how they are scaled
+    left_out : numbers (m,) of unknowns, rising; only between these may a matrix be unsymmetric
     """
 
     name = "pardiso_condensed"
 
-    def __init__(self, left_out: Array, scale: Array) -> None:
+    def __init__(self, scaled: ScaledHalf, left_out: Array) -> None:
         super().__init__()
-        self._left_out, self._scale = left_out, scale
-        self._place = np.full(len(scale), -1)
+        self._scaled, self._left_out = scaled, left_out
+        self._place = np.full(len(scaled.scale), -1)
         self._place[left_out] = np.arange(len(left_out))
+        rows, columns = self._place[scaled.half.rows], self._place[scaled.half.columns]
+        self._between = np.flatnonzero((rows >= 0) & (columns >= 0))
+        self._rows, self._columns = rows[self._between], columns[self._between]
         self._dense: Any = None
         self._solver.iparm[SCALING] = self._solver.iparm[MATCHING] = 0
         self._solver.iparm[SCHUR] = 2
@@ -74,11 +108,9 @@ class CondensedPardiso(SymmetricPardiso):
         upper = np.zeros((len(self._left_out), len(self._left_out)))
         self._take(matrix, ANALYSE_AND_FACTOR if self._system is None else FACTOR, upper)
         complement = np.triu(upper) + np.triu(upper, 1).T
-        half, between = self._half, self._between
-        skew = half.skew(matrix.data, between) * self._scale[half.rows[between]] * self._scale[half.columns[between]]
-        rows, columns = self._place[half.rows[between]], self._place[half.columns[between]]
-        complement[rows, columns] += skew
-        complement[columns, rows] -= skew
+        skew = self._scaled.skew(matrix, self._between)
+        complement[self._rows, self._columns] += skew
+        complement[self._columns, self._rows] -= skew
         self._dense = lu_factor(complement, overwrite_a=True, check_finite=False)
 
     def solve(self, right: Array) -> Array:
@@ -91,17 +123,15 @@ class CondensedPardiso(SymmetricPardiso):
         """
         if self._system is None:
             raise InputError("factor a matrix before solving")
-        reduced = call_pardiso(self._solver, FORWARD, self._system, self._scale * right)
+        reduced = call_pardiso(self._solver, FORWARD, self._system, self._scaled.scale * right)
         reduced[self._left_out] = lu_solve(self._dense, reduced[self._left_out], check_finite=False)
-        return self._scale * call_pardiso(self._solver, BACKWARD, self._system, reduced)
+        return self._scaled.scale * call_pardiso(self._solver, BACKWARD, self._system, reduced)
 
     def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
-        structure = super()._structure(matrix)
-        self._between = np.flatnonzero((self._place[self._half.rows] >= 0) & (self._place[self._half.columns] >= 0))
-        return structure
+        return self._scaled.half.structure(matrix.shape[0])
 
     def _entries(self, matrix: csr_matrix) -> Array:
-        return super()._entries(matrix) * self._scale[self._half.rows] * self._scale[self._half.columns]
+        return self._scaled.symmetric(matrix)
 
 
 class CondensedFactors(IterativeSolver):
@@ -112,22 +142,22 @@ class CondensedFactors(IterativeSolver):
     exact = True
 
     def __init__(self) -> None:
-        self._half: UpperHalf | None = None
-        self._scale, self._sizes = np.zeros(0), np.zeros(0)
+        self._scaled: ScaledHalf | None = None
         self._direct: CondensedPardiso | None = None
         self._unchecked: csr_matrix | None = None
 
     def factor(self, system: LinearSystem) -> None:
         """Factor a system if friction acts on some of its unknowns; its pattern must be that of the first one."""
         matrix = system.matrix
-        if self._half is None:
-            self._half, self._scale = UpperHalf.of(matrix), scales(matrix)
-            self._sizes = self._scale[self._half.rows] * self._scale[self._half.columns]
-        skew = self._half.skew(matrix.data) * self._sizes
-        there = np.flatnonzero(~(np.abs(skew) <= SKEW))
-        touched = np.union1d(self._half.rows[there], self._half.columns[there])
+        if self._scaled is None:
+            self._scaled = ScaledHalf.of(matrix)
+        there = np.flatnonzero(~(np.abs(self._scaled.skew(matrix)) <= SKEW))
+        touched = np.union1d(self._scaled.half.rows[there], self._scaled.half.columns[there])
         if self._direct is None or not self._direct.leaves_out(touched):
-            self._choose(touched, system)
+            if self._direct is not None:
+                self._direct.close()
+            left_out = _left_out(touched, system)
+            self._direct = CondensedPardiso(self._scaled, left_out) if len(left_out) else None
         if self._direct is not None:
             self._direct.factor(matrix)
             self._unchecked = matrix
@@ -142,7 +172,7 @@ class CondensedFactors(IterativeSolver):
         ConvergenceError
             If friction acts on no unknown or on too many, or the factor is not exact.
         """
-        if self._half is None:
+        if self._scaled is None:
             raise InputError("factor a matrix before solving")
         if self._direct is None:
             raise ConvergenceError("friction acts on no unknown, or on too many")
@@ -155,21 +185,19 @@ class CondensedFactors(IterativeSolver):
         """Release the factor's memory; the next matrix may have another pattern."""
         if self._direct is not None:
             self._direct.close()
-        self._direct = self._half = self._unchecked = None
+        self._direct = self._scaled = self._unchecked = None
 
-    def _choose(self, touched: Array, system: LinearSystem) -> None:
-        """Choose anew what is left out of the factor: what friction touches, and the surface beside it."""
-        if self._direct is not None:
-            self._direct.close()
-        size, surface = system.matrix.shape[0], system.surface
-        chosen = np.zeros(size, bool)
-        chosen[touched] = True
-        beside = system.matrix[surface][:, surface] != 0
-        for _ in range(MARGIN):
-            chosen[surface] |= beside @ chosen[surface]
-        left_out = np.flatnonzero(chosen)
-        worth = 0 < len(left_out) <= MOST_LEFT_OUT * np.sqrt(size)
-        self._direct = CondensedPardiso(left_out, self._scale) if worth else None
+
+def _left_out(touched: Array, system: LinearSystem) -> Array:
+    """What is left out of the factor (m,), rising: what friction touches, and the surface beside it; none if that is too much."""
+    size, surface = system.matrix.shape[0], system.surface
+    chosen = np.zeros(size, bool)
+    chosen[touched] = True
+    beside = system.matrix[surface][:, surface] != 0
+    for _ in range(MARGIN):
+        chosen[surface] |= beside @ chosen[surface]
+    left_out = np.flatnonzero(chosen)
+    return left_out if len(left_out) <= MOST_LEFT_OUT * np.sqrt(size) else left_out[:0]
 
 
 def scales(matrix: csr_matrix) -> Array:

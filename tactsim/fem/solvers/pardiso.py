@@ -147,6 +147,11 @@ class UpperHalf:
         upper = np.flatnonzero(matrix.indices >= rows)
         return cls(upper, numbered.T.tocsr().data[upper], rows[upper], matrix.indices[upper])
 
+    def structure(self, size: int) -> tuple[Array, Array]:
+        """Starts of its ``size`` rows and its columns, counted from one."""
+        starts = np.concatenate([[0], np.cumsum(np.bincount(self.rows, minlength=size))])
+        return starts.astype(np.int32) + 1, self.columns.astype(np.int32) + 1
+
     def symmetric(self, data: Array) -> Array:
         """Entries (k,) of the symmetric part of the matrix with the entries ``data``."""
         return (data[self.upper] + data[self.mirror]) / 2
@@ -175,8 +180,7 @@ class SymmetricPardiso(Pardiso):
 
     def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
         self._half = UpperHalf.of(matrix)
-        starts = np.concatenate([[0], np.cumsum(np.bincount(self._half.rows, minlength=matrix.shape[0]))])
-        return starts.astype(np.int32) + 1, self._half.columns.astype(np.int32) + 1
+        return self._half.structure(matrix.shape[0])
 
     def _entries(self, matrix: csr_matrix) -> Array:
         """Entries of the symmetric part on and above the diagonal."""
