@@ -20,8 +20,12 @@ MOST_ELEMENTS = 500_000
 LARGEST_AREA = 3**0.5 / 4
 """Of a triangle over the square of its longest edge."""
 SURELY = 4.0
-"""Elements that coarse triangles seem to need, at their largest wanted size, over the most, from which on they are too many: that
-size may be half of what is wanted between the places looked at."""
+"""Elements that coarse triangles seem to need over the most, from which on they are too many: what is wanted between the places
+looked at is not known."""
+HALVES = ((0, 3, 5), (1, 4, 3), (2, 5, 4), (3, 4, 5))
+"""Triangles of the corners and, from 3 on, of the middles of the edges of one."""
+ALIKE = 1e-4
+"""Part by which sizes differ at most that are taken for one."""
 
 
 def section_mesh(
@@ -65,8 +69,7 @@ def section_mesh(
         marked = np.flatnonzero(edges.max(axis=1) > wanted)
         if not len(marked):
             break
-        needed = float((_areas(corners) / (LARGEST_AREA * sizes.max(axis=0)) / sizes.max(axis=0)).sum())
-        if mesh.nelements > MOST_ELEMENTS or needed > SURELY * MOST_ELEMENTS:
+        if mesh.nelements > MOST_ELEMENTS or _needed(corners, size) > SURELY * MOST_ELEMENTS:
             raise InputError(f"{keys}: more than {MOST_ELEMENTS} elements; allowed: up to that; take larger ones")
         mesh = mesh.refined(marked)
     else:
@@ -74,6 +77,30 @@ def section_mesh(
     middle = mesh.p[1, mesh.t].mean(axis=0)
     regions = len(heights) - 1 - np.searchsorted(heights, middle)
     return quadratic_mesh(_with_rings(mesh.p.T, rings), mesh.t.T.astype(np.int64), regions)
+
+
+def _needed(corners: Array, size: Size) -> float:
+    """Elements that triangles (n, 3, 2) need if the wanted size is linear between corners and middles of edges."""
+    places = np.concatenate([corners, (corners + np.roll(corners, -1, axis=1)) / 2], axis=1)
+    wanted = np.stack([size(places[:, i]) for i in range(6)], axis=1)
+    return float((_areas(corners) / 4 * _inverse_square(wanted[:, HALVES]).sum(axis=1)).sum() / LARGEST_AREA)
+
+
+def _inverse_square(sizes: Array) -> Array:
+    """Mean of 1/s^2 over triangles (...) on which s is linear, with these values at the corners (..., 3).
+
+    Twice the second divided difference of -ln s (Hermite-Genocchi formula: de Boor 2005, Surveys in Approximation Theory 1, 46).
+    """
+    a, b, c = np.moveaxis(np.sort(sizes, axis=-1), -1, 0)
+    alike = c - a < ALIKE * c
+    apart = np.where(alike, 1.0, c - a)
+    return np.where(alike, ((a + b + c) / 3) ** -2.0, 2 * (_slope_of_log(a, b) - _slope_of_log(b, c)) / apart)
+
+
+def _slope_of_log(a: Array, b: Array) -> Array:
+    """(ln b - ln a) / (b - a), of a <= b."""
+    apart = np.where(b > a, b - a, 1.0)
+    return np.where(b > a, np.log1p(apart / a) / apart, 1 / a)
 
 
 def _areas(corners: Array) -> Array:
@@ -103,11 +130,12 @@ def edge_graded(edges: Array, *, finest: float, growth: float, coarsest: float, 
     return size
 
 
-def finer_at_surface(usual: Size, *, finest: float, growth: float, reach: float) -> Size:
-    """The usual size, but ``finest`` on the surface z = 0 within ``reach`` of the axis, growing by ``growth`` per distance."""
+def finer_at_surface(usual: Size, *, radii: Array, finest: float, growth: float, reach: float) -> Size:
+    """The usual size, but ``finest`` on the surface z = 0 within ``reach`` of radii (n,), growing by ``growth`` per distance."""
 
     def size(points: Array) -> Array:
-        away = np.hypot(np.maximum(np.abs(points[:, 0]) - reach, 0.0), np.maximum(-points[:, 1], 0.0))
+        along = np.abs(points[:, :1] - radii).min(axis=1) - reach
+        away = np.hypot(np.maximum(along, 0.0), np.maximum(-points[:, 1], 0.0))
         fine: Array = np.minimum(usual(points), finest + growth * away)
         return fine
 

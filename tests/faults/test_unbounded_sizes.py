@@ -60,7 +60,7 @@ def test_sectors_of_a_fine_section_are_counted_before_they_are_swept():
         case.experiment.model()
 
 
-@pytest.mark.parametrize("mesh", ["{finest: 1 nm}", "{finest: 0.1 um}", "{refinement: 1e5}"])
+@pytest.mark.parametrize("mesh", ["{finest: 1 nm}", "{finest: 10 nm, growth: 0.05}", "{refinement: 1e5}"])
 def test_sections_too_fine_are_refused_before_they_are_built(mesh: str, monkeypatch: pytest.MonkeyPatch):
     case = load_case(CASES / "annulus_icf.yaml", [f"experiment.mesh={mesh}"])
     refined, counts = MeshTri.refined, []

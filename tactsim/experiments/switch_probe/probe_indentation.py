@@ -36,7 +36,7 @@ class ProbeIndentation(TimedIndentation):
 
     def section(self) -> GradedSection:
         """The section, its elements smallest in all that comes to lie on the face and beside its corners."""
-        return replace(super().section(), reach=REACH * self.contact_radius)
+        return replace(super().section(), reach=REACH * self.contact_radius, deep=True)
 
 
 @dataclass(frozen=True)

@@ -8,6 +8,7 @@ from solids import assert_close
 
 from tactsim.errors import InputError
 from tactsim.fem.assembly.space import TaylorHood
+from tactsim.mesh import axisymmetric
 from tactsim.mesh.axisymmetric import edge_graded, section_mesh
 
 RADIUS, HEIGHTS = 15e-3, (0.0, -1e-3, -10e-3)
@@ -116,3 +117,15 @@ def test_the_size_grows_from_the_edges_to_its_bound():
     assert_close(GRADED(np.array([[1.0, 0.0]])), 2e-3, 1e-15)
     reaching = edge_graded(EDGES, finest=1e-4, growth=0.35, coarsest=2e-3, reach=2e-3)
     assert_close(reaching(np.array([[3e-3 + 1.9e-3, 0.0]])), 1e-4, 1e-15)
+
+
+@pytest.mark.parametrize(
+    "sizes", [(1.0, 1.0, 1.0), (1.0, 1.0, 2.0), (3.0, 1.0, 3.0), (0.05, 1.0, 4.0), (1.0, 1.0 + 1e-5, 1.0), (1.0, 1.0003, 1.0006)]
+)
+def test_elements_of_a_linear_size_are_counted_exactly(sizes):
+    points, weights = np.polynomial.legendre.leggauss(200)
+    u, w = (points + 1) / 2, weights / 2
+    first, second = u[:, None] * np.ones_like(u), (1 - u[:, None]) * u  # a triangle as a square that is drawn together
+    inside = sizes[0] * (1 - first - second) + sizes[1] * first + sizes[2] * second
+    mean = 2 * float(w @ ((1 - u[:, None]) * inside**-2.0) @ w)
+    assert_close(axisymmetric._inverse_square(np.array(sizes)), mean, 1e-7)
