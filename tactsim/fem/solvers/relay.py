@@ -10,7 +10,7 @@ from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem
 
 
 class Relay(IterativeSolver):
-    """The first of some solvers until a solution with it fails, from then on the next; only the last one's failure is an error.
+    """The first of some solvers until it fails with a system, from then on the next; only the last one's failure is an error.
 
     Parameters
     ----------
@@ -39,9 +39,20 @@ class Relay(IterativeSolver):
         return self.current.finest_step
 
     def factor(self, system: LinearSystem) -> None:
-        """Take a system and make its preconditioner."""
+        """Take a system and make its factor or preconditioner.
+
+        Raises
+        ------
+        ConvergenceError
+            If the last of the solvers fails.
+        """
         self._system = system
-        self.current.factor(system)
+        try:
+            self.current.factor(system)
+        except ConvergenceError:
+            if not self._others:
+                raise
+            self._hand_on(system)
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Solution for one right-hand side (n,) of the last system; its error over its size may be ``accuracy``.
@@ -55,16 +66,21 @@ class Relay(IterativeSolver):
         """
         if self._system is None:
             raise InputError("factor a matrix before solving")
-        while self._others:
-            try:
-                return self.current.solve(right, accuracy)
-            except ConvergenceError:
-                self.current.close()
-                self.current = self._others.pop(0)()
-                self.current.factor(self._system)
-        return self.current.solve(right, accuracy)
+        try:
+            return self.current.solve(right, accuracy)
+        except ConvergenceError:
+            if not self._others:
+                raise
+            self._hand_on(self._system)
+            return self.solve(right, accuracy)
 
     def close(self) -> None:
         """Release the memory of the solver that solves now."""
         self.current.close()
         self._system = None
+
+    def _hand_on(self, system: LinearSystem) -> None:
+        """Give the system to the next solver."""
+        self.current.close()
+        self.current = self._others.pop(0)()
+        self.factor(system)

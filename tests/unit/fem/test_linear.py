@@ -201,6 +201,23 @@ def test_where_a_guide_fails_a_sturdier_one_takes_over_for_good():
         Relay(sturdier).solve(right)
 
 
+class Unfactored(ReusedFactor):
+    """A solver whose factor fails."""
+
+    def factor(self, system):
+        raise ConvergenceError("a pivot is zero")
+
+
+def test_a_sturdier_solver_takes_over_where_a_factor_fails():
+    matrix, right = tangent_of(2, axes=2)
+    system, sturdiest = LinearSystem(matrix), ReusedFactor(SinglePardiso())
+    helped = Relay(Unfactored(SinglePardiso()), lambda: Unfactored(SinglePardiso()), lambda: sturdiest)
+    assert np.linalg.norm(matrix @ solved(helped, system, right, 1e-8) - right) <= 2e-8 * np.linalg.norm(right)
+    assert helped.current is sturdiest
+    with pytest.raises(ConvergenceError, match="a pivot is zero"):
+        Relay(Unfactored(SinglePardiso()), lambda: Unfactored(SinglePardiso())).factor(system)
+
+
 def changed(matrix, amount, *, skew=0.0):
     """The matrix with its entries changed at random, symmetrically and not, in the same pattern."""
     noise = np.random.default_rng(4).normal(size=matrix.shape[0])
