@@ -15,7 +15,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from campaign.random_cases import FEW_TRIALS, all_kinds
+from campaign.families import FEW_TRIALS, all_families
 from campaign.record import ANSWERS, as_line, first_runs, last_runs, read_record
 from campaign.report import page, table_text
 from campaign.trials import PATIENCE, Ended, Running, Trial, tried
@@ -52,7 +52,7 @@ def main() -> int:
 
 def _arguments() -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="scripts/campaign", description=__doc__)
-    parser.add_argument("kinds", metavar="KIND", nargs="*", help="kinds of cases; all by default")
+    parser.add_argument("kinds", metavar="KIND", nargs="*", help="kinds of cases, and harder families of some; all by default")
     parser.add_argument("--seed", type=int, default=1, help="case k of a seed is the same everywhere; default: %(default)s")
     parser.add_argument("--cases", type=int, help="cases of each kind; by default as many as the time allows")
     parser.add_argument("--minutes", type=float, help="time for the random cases, 0 for none; with neither, 10 minutes")
@@ -111,7 +111,7 @@ def _trials(arguments: argparse.Namespace, record: list[Ended]) -> Iterator[Tria
     """Those that the record does not hold yet."""
     done = set(last_runs(record))
     for number in itertools.count() if arguments.cases is None else range(arguments.cases):
-        for kind in arguments.kinds or all_kinds():
+        for kind in arguments.kinds or all_families():
             part = 1.0 if arguments.kinds else FEW_TRIALS.get(kind, 1.0)
             if (part == 1.0 or number * part % 1.0 < part) and (kind, number) not in done:
                 yield Trial(kind, arguments.seed, number, arguments.limit)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from math import cos, sin
 from typing import Any
 
 BALANCE = 1e-6
@@ -30,7 +31,11 @@ def contradictions(result: dict[str, Any], experiment: dict[str, Any] | None = N
     if lost := [*_not_finite(values), *_not_finite(steps)]:
         more = f" and {len(lost) - PLACES_TOLD} more" if len(lost) > PLACES_TOLD else ""
         return [f"{', '.join(lost[:PLACES_TOLD])}{more}: not finite"]
-    faults = [*_out_of_balance(values), *_penetrated(values), *_cut_short(values, result["reason"], experiment or {})]
+    faults = [
+        *_out_of_balance(values, _normal_of_lower_jaw(result)),
+        *_penetrated(values),
+        *_cut_short(values, result["reason"], experiment or {}),
+    ]
     if values.get("min_volume_ratio", 1.0) <= LEAST_VOLUME:
         faults.append(f"a volume ratio of {values['min_volume_ratio']:g}")
     threshold = values.get("threshold_force")
@@ -48,14 +53,22 @@ def _not_finite(value: Any, place: str = "") -> Iterator[str]:
         yield place
 
 
-def _out_of_balance(values: dict[str, Any]) -> Iterator[str]:
+def _normal_of_lower_jaw(result: dict[str, Any]) -> tuple[float, float, float]:
+    """Unit vector across its face into the tissue; it turns about x first, then about y."""
+    jaw = result.get("scene", {}).get("jaws", {}).get("lower", {})
+    x, y = jaw.get("tilt_x", 0.0), jaw.get("tilt_y", 0.0)
+    return cos(x) * sin(y), -sin(x), cos(x) * cos(y)
+
+
+def _out_of_balance(values: dict[str, Any], lower: tuple[float, float, float]) -> Iterator[str]:
     """Parts of a jaw that are not its whole, and a body that is pressed from one side only."""
     pairs = []
     for side, whole in (("upper", "the reaction"), ("lower", "the force on that jaw")):
         if f"taxel_force_{side}" in values:
             taxels = sum(sum(row) for row in values[f"taxel_force_{side}"])
             parts = taxels + values[f"gap_force_{side}"] + values[f"outside_force_{side}"]
-            force = values["reaction_force"] if side == "upper" else -values["jaw_force_lower"][2]
+            across = -sum(part * n for part, n in zip(values["jaw_force_lower"], lower, strict=True))
+            force = values["reaction_force"] if side == "upper" else across
             pairs.append((f"taxels, gaps and outside of the {side} jaw are", parts, whole, force))
     if "jaw_force_lower" in values:
         for axis, (upper, lower) in enumerate(zip(values["jaw_force_upper"], values["jaw_force_lower"], strict=True)):
@@ -80,9 +93,9 @@ def _penetrated(values: dict[str, Any]) -> Iterator[str]:
 
 def _cut_short(values: dict[str, Any], reason: str, experiment: dict[str, Any]) -> Iterator[str]:
     """An end before the displacement of a case that is made at random, which is in mm."""
-    if experiment.get("kind") == "grasp":
+    if experiment.get("kind") == "grasp" and experiment["loading"]["control"] == "displacement":
         asked = experiment["loading"]["pieces"][-1]["to"]
-    elif experiment.get("kind") == "indentation" and reason == "displacement reached":
+    elif experiment.get("kind") in ("indentation", "indentation_3d") and reason == "displacement reached":
         asked = experiment["displacement"]
     else:
         return

@@ -1,4 +1,4 @@
-"""Random sensible cases of every kind, each a function of (seed, number) only."""
+"""Random sensible cases: indentations, grasps, and examples of other kinds with other numbers."""
 
 from __future__ import annotations
 
@@ -10,29 +10,12 @@ import numpy as np
 
 from tactsim.case.writing import case_document
 from tactsim.interfaces import Experiment
-from tactsim.registry import kind_class, kinds
+from tactsim.registry import kind_class
 
 Case = dict[str, Any]
 Generator = np.random.Generator
 TISSUES = ("icf_stable", "b1a_stable")
-NEEDS_FILES = ("localization", "matrix_readout", "confusion", "detectability")
-"""Kinds that read a stored grasp or data set: the tests of the faults try them."""
-FEW_TRIALS = {"threshold_trial": 0.02, "elastomer_ranking": 0.02, "switch_probe": 0.1}
-"""Share of all cases that a kind gets whose runs take minutes."""
 NUMBER = re.compile(r"^(-?[0-9.]+(?:e-?[0-9]+)?) (.+)$")
-
-
-def random_case(kind: str, seed: int, number: int) -> Case:
-    """The document of a case of a kind."""
-    rng = np.random.default_rng([seed, number, *kind.encode()])
-    made = {"indentation": indentation, "grasp": grasp}.get(kind)
-    experiment = made(rng) if made else varied_example(kind, rng)
-    return {"schema": "tactsim/case/1", "title": f"{kind} {number} of seed {seed}", "experiment": {"kind": kind, **experiment}}
-
-
-def all_kinds() -> list[str]:
-    """Kinds that need nothing but their case."""
-    return [kind for kind in kinds(Experiment) if kind not in NEEDS_FILES]
 
 
 def length(metres: float) -> str:

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from campaign.contradictions import contradictions
-from campaign.random_cases import Case, random_case
+from campaign.families import random_case
+from campaign.random_cases import Case
 from tactsim.case.writing import yaml_text
 from tactsim.code_identity import code_identity
 

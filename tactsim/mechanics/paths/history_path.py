@@ -14,6 +14,7 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.assembly.body import Body, RelaxationStep
 from tactsim.fem.assembly.history_variables import HistoryVariables, elastic_stress, series_of, size_of, step_error
+from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.paths.loading import Event, PathFollower, StepControl
 from tactsim.fem.paths.progress import check_steps
 from tactsim.fem.paths.time_steps import TimeControl, TimeEvent, TimeMarcher
@@ -215,10 +216,12 @@ class TimedPath:
         return self._reached(last.state, last.state.time, target, last.state.unknowns), False
 
     def _lost_volume(self, before: TimedState, reached: TimedState) -> bool:
-        """Whether more of the body than before misses the volume that its pressure asks for, and than is warned of."""
-        body = self._problem.body
-        share, earlier = (poor_share(body, volume_error(body, state.contact)) for state in (reached, before))
-        return share > max(POOR_SHARE, earlier)
+        """Whether more of the body than before misses the volume that its pressure asks for, and than is warned of, or an element
+        is about to turn inside out that was not."""
+        body, now, then = self._problem.body, reached.contact, before.contact
+        share, earlier = (poor_share(body, volume_error(body, state)) for state in (now, then))
+        collapsed, already = (collapsed_in_words(body, state.kinematics, state.unknowns) for state in (now, then))
+        return share > max(POOR_SHARE, earlier) or (collapsed is not None and already is None)
 
     def _march(
         self, start: TimedState, interval: TimeInterval, event: TimeEvent[TimedState] | None

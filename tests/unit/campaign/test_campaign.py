@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 from campaign.contradictions import contradictions
-from campaign.random_cases import all_kinds, random_case
+from campaign.families import MADE, all_families, random_case
 from campaign.record import as_line, first_runs, last_runs, read_record
 from campaign.report import page
 from campaign.trials import PATIENCE, Ended, Running, Trial, judged, tried
@@ -22,18 +22,18 @@ from tactsim.results.result import Result
 GOOD = {"status": "converged", "reason": "done", "quantities": {"force": {"value": 1.0}}}
 
 
-@pytest.mark.parametrize("kind", ["grasp", "indentation", "film_test", "sensor_response"])
-def test_a_case_is_a_function_of_seed_and_number_and_is_accepted(tmp_path: Path, kind: str) -> None:
-    assert random_case(kind, 1, 5) == random_case(kind, 1, 5)
-    assert len({yaml_text(random_case(kind, 1, number)) for number in range(8)}) == 8
+@pytest.mark.parametrize("family", [*MADE, "film_test", "sensor_response"])
+def test_a_case_is_a_function_of_seed_and_number_and_is_accepted(tmp_path: Path, family: str) -> None:
+    assert random_case(family, 1, 5) == random_case(family, 1, 5)
+    assert len({yaml_text(random_case(family, 1, number)) for number in range(8)}) == 8
     for number in range(8):
         path = tmp_path / f"{number}.yaml"
-        path.write_text(yaml_text(random_case(kind, 2, number)), encoding="utf-8")
-        assert load_case(path).experiment.kind == kind
+        path.write_text(yaml_text(random_case(family, 2, number)), encoding="utf-8")
+        assert load_case(path).experiment.kind == MADE.get(family, (family, None))[0]
 
 
 def test_every_kind_that_needs_no_file_is_tried() -> None:
-    assert {"grasp", "indentation", "indentation_3d", "timed_indentation", "boundary_value_problem"} <= set(all_kinds())
+    assert {"grasp", "indentation", "indentation_3d", "timed_indentation", "boundary_value_problem"} <= set(all_families())
 
 
 def place(folder: Path, result: dict | None, words: str = "") -> Path:

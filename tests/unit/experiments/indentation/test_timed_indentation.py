@@ -16,6 +16,7 @@ from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Layer, Specimen
+from tactsim.mechanics.paths import history_path
 from tactsim.mechanics.paths.loading import DisplacementLoading, ForceLoading
 from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.plotting import figures_for
@@ -91,6 +92,16 @@ def test_a_ball_on_a_ramp_passes_its_first_touch_and_fades_as_its_growing_contac
 
     check(float(fading(1.0 - middles) @ np.diff(force)))
     assert_kills(check, elastic=(force[-1],))
+
+
+def test_a_sudden_change_goes_in_parts_where_its_whole_leaves_an_element_without_volume(held, monkeypatch):
+    """What Newton finds far away may be another equilibrium, of an element that no shorter step brings back."""
+    told = iter(["element 7 has kept 12% of its volume"])
+    monkeypatch.setattr(history_path, "collapsed_in_words", lambda body, kinematics, unknowns: next(told, None))
+    result = thin(contact=Coulomb(friction=0.4)).run()
+    assert result.scene.solver.rejected_steps == held.scene.solver.rejected_steps + 1
+    forces = [history(one, "reaction_force")[0] for one in (result, held)]
+    assert forces[0] == pytest.approx(forces[1], rel=1e-3), "with friction the parts of the way count a little"
 
 
 def test_a_held_force_creeps():

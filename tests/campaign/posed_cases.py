@@ -1,0 +1,74 @@
+"""Random sensible cases that are harder than those of their kind: jaws and bodies that lean, forces, layers, curved tissue."""
+
+from __future__ import annotations
+
+from math import atan, degrees
+from typing import Any
+
+import numpy as np
+
+from campaign.random_cases import Case, Generator, grasp, indentation, length, tissue
+
+STEEPEST = 4.0
+"""Largest tilt of a jaw in degrees; half the angle of friction if that is less, as beyond it the block slips out."""
+SOFTEST, STIFFEST = 0.05, 0.4
+"""Force on a jaw in N per kPa of shear modulus and cm^2 of a block's face."""
+SHEAR = {"icf_stable": 3.6, "b1a_stable": 90.0}
+"""Small-strain shear modulus in kPa of the shipped tissues."""
+
+
+def posed_grasp(rng: Generator) -> Case:
+    """A grasp whose jaws lean by up to four degrees and stand beside the middle; three in ten by force."""
+    case = grasp(rng)
+    law = case["contact"]
+    most = STEEPEST if law["kind"] == "stick" else min(STEEPEST, degrees(atan(law["friction"])) / 2)
+    size = [_number(extent) for extent in case["block"]["size"]]
+    for side in ("upper", "lower"):
+        tilts = {axis: f"{most * rng.uniform(-1, 1) / 2**0.5:.3g} deg" for axis in ("tilt_x", "tilt_y") if most}
+        case[side] = {**tilts, "offset": [length(1e-3 * extent * rng.uniform(-0.05, 0.05)) for extent in size[:2]]}
+    if rng.random() < 0.3:
+        force = rng.uniform(SOFTEST, STIFFEST) * _shear(case["block"]["tissue"]) * size[0] * size[1] / 100
+        case["loading"] = {"control": "force", "pieces": [{"kind": "ramp", "to": f"{force:.4g} N", "duration": "1 s"}]}
+    return case
+
+
+def layered_indentation(rng: Generator) -> Case:
+    """An indentation of a specimen with up to two layers, or a curved top, or a base on which it slips."""
+    case = indentation(rng)
+    specimen = case["specimen"]
+    thickness, radius = _number(specimen["thickness"]), _number(specimen["radius"])
+    layers = [length(1e-3 * thickness * rng.uniform(0.05, 0.3)) for _ in range(int(rng.integers(0, 3)))]
+    if layers:
+        specimen["layers"] = [{"material": tissue(rng), "thickness": each} for each in layers]
+    if rng.random() < 0.5:
+        least = max(radius, (radius**2 + thickness**2) / thickness)  # its cap is half as deep as the specimen is thick, or less
+        surface_radius = length(1e-3 * least * rng.uniform(1.1, 4.0))
+        specimen |= {"surface": str(rng.choice(["convex", "concave"])), "surface_radius": surface_radius}
+    if rng.random() < 0.3:
+        specimen["base"] = "slipping"
+    return case
+
+
+def posed_indentation(rng: Generator) -> Case:
+    """An indentation in 3D, half as deep, whose body leans by up to five degrees or stands beside the axis; few elements."""
+    case = indentation(rng)
+    radius = _number(case["body"].get("outer_radius") or case["body"]["radius"])
+    case["displacement"] = f"{_number(case['displacement']) / 2:.4g} mm"
+    case["mesh"] = {"growth": 1.0, "finest": length(1e-3 * radius / 10), "sectors": 3}
+    if rng.random() < 0.7:
+        case |= {axis: f"{rng.uniform(-5, 5):.3g} deg" for axis in ("tilt_x", "tilt_y")}
+    if rng.random() < 0.5:
+        room = _number(case["specimen"]["radius"]) - 1.2 * radius
+        case["offset"] = length(1e-3 * rng.uniform(0.0, 0.3) * room)
+    return case
+
+
+def _number(text: str) -> float:
+    return float(text.split()[0])
+
+
+def _shear(material: str | dict[str, Any]) -> float:
+    """Small-strain shear modulus in kPa."""
+    if isinstance(material, str):
+        return SHEAR[material]
+    return 2e-3 * float(np.sum([_number(material[key]) for key in ("c10", "c01") if key in material]))
