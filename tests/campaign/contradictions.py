@@ -55,7 +55,7 @@ def _not_finite(value: Any, place: str = "") -> Iterator[str]:
 
 def _normal_of_lower_jaw(result: dict[str, Any]) -> tuple[float, float, float]:
     """Unit vector across its face into the tissue; it turns about x first, then about y."""
-    jaw = result.get("scene", {}).get("jaws", {}).get("lower", {})
+    jaw = (result.get("scene") or {}).get("jaws", {}).get("lower", {})
     x, y = jaw.get("tilt_x", 0.0), jaw.get("tilt_y", 0.0)
     return cos(x) * sin(y), -sin(x), cos(x) * cos(y)
 

@@ -11,23 +11,27 @@ from campaign.random_cases import Case, Generator, grasp, indentation, length, t
 
 STEEPEST = 4.0
 """Largest tilt of a jaw in degrees; half the angle of friction if that is less, as beyond it the block slips out."""
-SOFTEST, STIFFEST = 0.05, 0.4
-"""Force on a jaw in N per kPa of shear modulus and cm^2 of a block's face."""
+ASKEW = 0.1
+"""Largest part of a tilt in degrees that the jaws do not share as mirror images. Where both lean the same way, the block is held
+at first by opposite edges, and turns."""
+LEAST_FORCE, LARGEST_FORCE = 0.01, 0.06
+"""On a jaw in N per kPa of shear modulus and cm^2 of a block's face: they close it by some 2 to 13 %."""
 SHEAR = {"icf_stable": 3.6, "b1a_stable": 90.0}
 """Small-strain shear modulus in kPa of the shipped tissues."""
 
 
 def posed_grasp(rng: Generator) -> Case:
-    """A grasp whose jaws lean by up to four degrees and stand beside the middle; three in ten by force."""
+    """A grasp whose jaws lean towards or away from each other by up to four degrees each; three in ten by force."""
     case = grasp(rng)
     law = case["contact"]
     most = STEEPEST if law["kind"] == "stick" else min(STEEPEST, degrees(atan(law["friction"])) / 2)
     size = [_number(extent) for extent in case["block"]["size"]]
-    for side in ("upper", "lower"):
-        tilts = {axis: f"{most * rng.uniform(-1, 1) / 2**0.5:.3g} deg" for axis in ("tilt_x", "tilt_y") if most}
+    apart = {axis: most * rng.uniform(-1, 1) / 2**0.5 for axis in ("tilt_x", "tilt_y")}
+    for side, sign in (("upper", 1), ("lower", -1)):
+        tilts = {axis: f"{sign * lean + ASKEW * rng.uniform(-1, 1):.3g} deg" for axis, lean in apart.items() if most}
         case[side] = {**tilts, "offset": [length(1e-3 * extent * rng.uniform(-0.05, 0.05)) for extent in size[:2]]}
     if rng.random() < 0.3:
-        force = rng.uniform(SOFTEST, STIFFEST) * _shear(case["block"]["tissue"]) * size[0] * size[1] / 100
+        force = rng.uniform(LEAST_FORCE, LARGEST_FORCE) * _shear(case["block"]["tissue"]) * size[0] * size[1] / 100
         case["loading"] = {"control": "force", "pieces": [{"kind": "ramp", "to": f"{force:.4g} N", "duration": "1 s"}]}
     return case
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from tactsim.contact.penalty import Regularisation
-from tactsim.errors import ConvergenceError
+from tactsim.errors import Unfinished
 from tactsim.experiments.indentation.record import IndentationRecord
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup, Timed
 from tactsim.fem.paths.loading import Event, PathFollower
@@ -93,7 +93,9 @@ class DisplacementPath:
         Raises
         ------
         ConvergenceError
-            If the path cannot be followed to its end, or the rise has passed its peak below the threshold.
+            If the path cannot be followed to its end.
+        Unfinished
+            If the rise has passed its peak below the threshold.
         """
         setup, recess = self._setup, self._setup.recess
         if recess is None:
@@ -108,7 +110,8 @@ class DisplacementPath:
             peak, peak_load = max((peak, peak_load), (rise, state.contact.load))
             if self._drive.stops_at_touch and rise < PAST_PEAK * peak and not touched:
                 highest, where = format_quantity(peak, "m"), format_quantity(peak_load, "m")
-                raise ConvergenceError(f"the tissue's rise peaked at {highest}, at a displacement of {where}, and is falling")
+                peaked = f"the tissue's rise peaked at {highest}, at a displacement of {where}, and is falling"
+                raise Unfinished(f"the threshold was not reached: {peaked}")
         posed = setup.posed()
         if touched and not self._drive.stops_at_touch and posed.inner_sensor is not None:
             place = state.contact.contacts[0].place + recess * posed.axis

@@ -18,7 +18,7 @@ from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem, solves
+from tactsim.fem.solvers.linear import FirstSolution, IterativeSolver, LinearSystem
 from tactsim.fem.solvers.pardiso import SymmetricPardiso, UpperHalf
 from tactsim.fem.solvers.pardiso_binding import (
     ANALYSE_AND_FACTOR,
@@ -147,7 +147,7 @@ class CondensedFactors(IterativeSolver):
     def __init__(self) -> None:
         self._scaled: ScaledHalf | None = None
         self._direct: CondensedPardiso | None = None
-        self._unchecked: csr_matrix | None = None
+        self._first = FirstSolution("condensed")
 
     def factor(self, system: LinearSystem) -> None:
         """Factor a system if friction acts on some of its unknowns; its pattern must be that of the first one."""
@@ -163,7 +163,7 @@ class CondensedFactors(IterativeSolver):
             self._direct = CondensedPardiso(self._scaled, left_out) if len(left_out) else None
         if self._direct is not None:
             self._direct.factor(matrix)
-            self._unchecked = matrix
+            self._first.awaited(matrix)
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Exact solution for one right-hand side (n,) of the last system.
@@ -179,16 +179,14 @@ class CondensedFactors(IterativeSolver):
             raise InputError("factor a matrix before solving")
         if self._direct is None:
             raise ConvergenceError("friction acts on no unknown, or on too many")
-        solution, matrix, self._unchecked = self._direct.solve(right), self._unchecked, None
-        if matrix is not None and not solves(matrix, solution, right):
-            raise ConvergenceError("the pivots of the condensed factor do not suffice")
-        return solution
+        return self._first.checked(self._direct.solve(right), right)
 
     def close(self) -> None:
         """Release the factor's memory; the next matrix may have another pattern."""
         if self._direct is not None:
             self._direct.close()
-        self._direct = self._scaled = self._unchecked = None
+        self._first.awaited(None)
+        self._direct = self._scaled = None
 
 
 def _left_out(touched: Array, system: LinearSystem) -> Array:

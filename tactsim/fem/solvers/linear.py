@@ -99,9 +99,29 @@ class IterativeSolver(ABC):
 LinearSolver = DirectSolver | IterativeSolver
 
 
-def solves(matrix: csr_matrix, solution: Array, right: Array) -> bool:
-    """Whether a solution (n,) of a right-hand side (n,) is as exact as a factor with sufficient pivots makes it."""
-    return bool(np.abs(matrix @ solution - right).max() <= EXACT * np.abs(right).max())
+class FirstSolution:
+    """Looks at the residual of the first solution with each factor of a ``kind``, whose pivots may not suffice."""
+
+    def __init__(self, kind: str) -> None:
+        self._kind = kind
+        self._matrix: csr_matrix | None = None
+
+    def awaited(self, matrix: csr_matrix | None) -> None:
+        """The next solution will be the first with a factor of this matrix; None: with none."""
+        self._matrix = matrix
+
+    def checked(self, solution: Array, right: Array) -> Array:
+        """The solution (n,) of a right-hand side (n,).
+
+        Raises
+        ------
+        ConvergenceError
+            If it is the first with its factor and not exact.
+        """
+        matrix, self._matrix = self._matrix, None
+        if matrix is not None and not np.abs(matrix @ solution - right).max() <= EXACT * np.abs(right).max():
+            raise ConvergenceError(f"the pivots of the {self._kind} factor do not suffice")
+        return solution
 
 
 def is_exact(solver: LinearSolver) -> bool:

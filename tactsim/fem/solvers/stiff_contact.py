@@ -8,7 +8,7 @@ from scipy.sparse import csr_matrix
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.solvers.condensed import CondensedFactors
-from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem, solves
+from tactsim.fem.solvers.linear import FirstSolution, IterativeSolver, LinearSystem
 from tactsim.fem.solvers.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
@@ -59,14 +59,15 @@ class SymmetricFactors(IterativeSolver):
     def __init__(self) -> None:
         self._direct = SymmetricPardiso(blocks=False, minimum_degree=True)
         self._probes: tuple[Array, Array] | None = None
-        self._unchecked: csr_matrix | None = None
+        self._first = FirstSolution("symmetric")
         self._symmetric = False
 
     def factor(self, system: LinearSystem) -> None:
         """Factor a system if it is symmetric; its pattern must be that of the first one."""
-        self._unchecked, self._symmetric = system.matrix, self._is_symmetric(system.matrix)
+        self._symmetric = self._is_symmetric(system.matrix)
         if self._symmetric:
             self._direct.factor(system.matrix)
+            self._first.awaited(system.matrix)
 
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
         """Exact solution for one right-hand side (n,) of the last system.
@@ -78,16 +79,13 @@ class SymmetricFactors(IterativeSolver):
         """
         if not self._symmetric:
             raise ConvergenceError("the matrix is not symmetric")
-        solution, matrix, self._unchecked = self._direct.solve(right), self._unchecked, None
-        if matrix is not None and not solves(matrix, solution, right):
-            raise ConvergenceError("the pivots of the symmetric factor do not suffice")
-        return solution
+        return self._first.checked(self._direct.solve(right), right)
 
     def close(self) -> None:
         """Release the factor's memory; the next matrix may have another pattern."""
         self._direct.close()
-        self._probes = self._unchecked = None
-        self._symmetric = False
+        self._first.awaited(None)
+        self._probes, self._symmetric = None, False
 
     def _is_symmetric(self, matrix: csr_matrix) -> bool:
         """Whether two vectors find it so: a tenth of the time that every entry and its mirror image take."""

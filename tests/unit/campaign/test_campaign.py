@@ -7,6 +7,7 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from campaign.contradictions import contradictions
 from campaign.families import MADE, all_families, random_case
@@ -84,9 +85,11 @@ QUANTITIES = {
 GRASP = {"kind": "grasp", "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": "1 mm"}]}}
 
 
-def found(changes: dict, steps: list[dict] = (), reason: str = "done", experiment: dict | None = None) -> list[str]:
+def found(
+    changes: dict, steps: list[dict] = (), reason: str = "done", experiment: dict | None = None, scene: dict | None = None
+) -> list[str]:
     quantities = {name: {"value": value} for name, value in {**QUANTITIES, **changes}.items()}
-    return contradictions({"quantities": quantities, "steps": steps, "reason": reason}, experiment)
+    return contradictions({"quantities": quantities, "steps": steps, "reason": reason, "scene": scene or {}}, experiment)
 
 
 @pytest.mark.parametrize(
@@ -111,6 +114,16 @@ def found(changes: dict, steps: list[dict] = (), reason: str = "done", experimen
 def test_a_wrong_number_of_a_converged_result_is_seen(changes: dict, fault: str) -> None:
     assert found({}, experiment=GRASP) == []
     assert found(changes, experiment=GRASP) == [fault]
+
+
+def test_taxels_of_a_jaw_that_leans_carry_what_presses_across_its_face() -> None:
+    across = np.array([np.cos(0.02) * np.sin(-0.03), -np.sin(0.02), np.cos(0.02) * np.cos(-0.03)])  # of z, turned about x, then y
+    along = np.cross(across, [1.0, 0.0, 0.0])
+    pulled = 3.75 * across + 0.5 * along
+    forces = {"jaw_force_upper": pulled.tolist(), "jaw_force_lower": (-pulled).tolist()}
+    assert found(forces, scene={"jaws": {"lower": {"tilt_x": 0.02, "tilt_y": -0.03}}}) == []
+    (fault,) = found(forces)
+    assert fault.startswith("taxels, gaps and outside of the lower jaw are 3.75 N, the force on that jaw 3.7")
 
 
 def test_the_base_carries_what_the_inner_sensor_presses_too() -> None:
