@@ -21,7 +21,7 @@ PEAK_ELEMENTS = 16
 """Elements over the radius of an annulus's hole that the size at the peak of the rise, on the axis, would allow.
 
 Why: that peak decides the threshold, whose pressure grows with nearly the third power of it, and on the axis a single height is
-known less well than its neighbours. In `annulus_icf` the threshold is 0.064 % too high with these, 0.077 % with 12 and 0.171 %
+known less well than its neighbours. In `annulus_icf` the threshold is 0.05 % too high with these, 0.06 % with 12 and 0.15 %
 with 6, for 2 827, 2 766 and 2 711 nodes."""
 
 KEYS = "mesh.finest, mesh.coarsest, mesh.growth and mesh.refinement"
