@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 from tactsim.errors import ConvergenceError
+from tactsim.experiments.indentation import graded_section
 from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.setup import IndentationSetup
 from tactsim.fem.equilibrium import newton
 from tactsim.mechanics.contact import contact_equilibrium
 from tactsim.results.result import Status
@@ -25,6 +28,14 @@ PUNCH = {
 
 
 @pytest.fixture
+def deep_cells(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The mesh on which these points were met: with small elements beneath the fillets too."""
+    section = IndentationSetup.section
+    monkeypatch.setattr(IndentationSetup, "section", lambda self: replace(section(self), deep=True))
+    monkeypatch.setattr(graded_section, "PEAK_ELEMENTS", 12)
+
+
+@pytest.fixture
 def plain_newton(monkeypatch: pytest.MonkeyPatch) -> None:
     """No step with an old factor, none from the forces that hold at the guess, none halved: each passes this point by luck."""
     monkeypatch.setattr(newton, "NEAR", 0.0)
@@ -32,7 +43,7 @@ def plain_newton(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(newton, "LARGEST_GROWTH", np.inf)
 
 
-@pytest.mark.usefixtures("plain_newton")
+@pytest.mark.usefixtures("deep_cells", "plain_newton")
 @pytest.mark.parametrize("displacement", [1.1235e-3, pytest.param(PUNCH["displacement"], marks=pytest.mark.slow)])
 def test_a_punch_goes_on_past_a_point_that_opens_and_closes(displacement: float) -> None:
     result = Indentation.model_validate(PUNCH | {"displacement": displacement}).run()
@@ -42,7 +53,7 @@ def test_a_punch_goes_on_past_a_point_that_opens_and_closes(displacement: float)
 
 
 @pytest.mark.slow
-@pytest.mark.usefixtures("plain_newton")
+@pytest.mark.usefixtures("deep_cells", "plain_newton")
 @pytest.mark.parametrize("displacement", [1.1235e-3, PUNCH["displacement"]])
 def test_without_the_drag_it_would_not(monkeypatch: pytest.MonkeyPatch, displacement: float) -> None:
     monkeypatch.setattr(contact_equilibrium, "SNAP_STEP", 0.0)
@@ -92,6 +103,7 @@ DEEP = {
 
 
 @pytest.mark.slow
+@pytest.mark.usefixtures("deep_cells")
 def test_a_snap_under_a_whole_step_crushes_what_the_drag_holds(monkeypatch: pytest.MonkeyPatch) -> None:
     assert Indentation.model_validate(DEEP).run().status is Status.CONVERGED
     monkeypatch.setattr(contact_equilibrium, "SNAP_LENGTH", contact_equilibrium.SNAP_STEP)
