@@ -101,8 +101,8 @@ def section_factors() -> Relay:
     """Of a section: symmetric factors until one will not do, which is with friction; from then on condensed ones, until friction
     acts on too many unknowns or their pivots do not suffice; from then on general ones.
 
-    Exact steps of Newton's are polished with the factor of the step before, so that `annulus_icf` takes 102 systems. A symmetric
-    factor in single precision that is reused as the guide of GMRES takes 141 for the same states, 77 factors and 1 179 solutions:
+    Exact steps of Newton's are polished with the factor of the step before, so that `annulus_icf` took 102 systems. A symmetric
+    factor in single precision that is reused as the guide of GMRES took 141 for the same states, 77 factors and 1 179 solutions:
     twice the time for the systems where a solution costs a fifth of a factor, as memory is slow.
     """
     return Relay(SymmetricFactors(), CondensedFactors, GeneralFactors)
