@@ -22,7 +22,7 @@ LARGEST_AREA = 3**0.5 / 4
 SURELY = 4.0
 """Elements that coarse triangles seem to need over the most, from which on they are too many: what is wanted between the places
 looked at is not known."""
-HALVES = ((0, 3, 5), (1, 4, 3), (2, 5, 4), (3, 4, 5))
+QUARTERS = ((0, 3, 5), (1, 4, 3), (2, 5, 4), (3, 4, 5))
 """Triangles of the corners and, from 3 on, of the middles of the edges of one."""
 ALIKE = 1e-4
 """Part by which sizes differ at most that are taken for one."""
@@ -69,7 +69,7 @@ def section_mesh(
         marked = np.flatnonzero(edges.max(axis=1) > wanted)
         if not len(marked):
             break
-        if mesh.nelements > MOST_ELEMENTS or _needed(corners, size) > SURELY * MOST_ELEMENTS:
+        if mesh.nelements > MOST_ELEMENTS or _needed(corners, sizes[:3].T, size) > SURELY * MOST_ELEMENTS:
             raise InputError(f"{keys}: more than {MOST_ELEMENTS} elements; allowed: up to that; take larger ones")
         mesh = mesh.refined(marked)
     else:
@@ -79,11 +79,11 @@ def section_mesh(
     return quadratic_mesh(_with_rings(mesh.p.T, rings), mesh.t.T.astype(np.int64), regions)
 
 
-def _needed(corners: Array, size: Size) -> float:
-    """Elements that triangles (n, 3, 2) need if the wanted size is linear between corners and middles of edges."""
-    places = np.concatenate([corners, (corners + np.roll(corners, -1, axis=1)) / 2], axis=1)
-    wanted = np.stack([size(places[:, i]) for i in range(6)], axis=1)
-    return float((_areas(corners) / 4 * _inverse_square(wanted[:, HALVES]).sum(axis=1)).sum() / LARGEST_AREA)
+def _needed(corners: Array, at_corners: Array, size: Size) -> float:
+    """Elements that triangles (n, 3, 2) need if the wanted size, (n, 3) at corners, is linear from there to middles of edges."""
+    middles = (corners + np.roll(corners, -1, axis=1)) / 2
+    wanted = np.column_stack([at_corners, *(size(middles[:, i]) for i in range(3))])
+    return float((_areas(corners) / 4 * _inverse_square(wanted[:, QUARTERS]).sum(axis=1)).sum() / LARGEST_AREA)
 
 
 def _inverse_square(sizes: Array) -> Array:

@@ -16,7 +16,7 @@ from tactsim.registry import kinds
 
 NEEDS_FILES = ("localization", "matrix_readout", "confusion", "detectability")
 """Kinds that read a stored grasp or data set: the tests of the faults try them."""
-FEW_TRIALS = {"threshold_trial": 0.02, "elastomer_ranking": 0.02, "switch_probe": 0.1}
+FEW_TRIALS = {"threshold_trial": 0.02, "elastomer_ranking": 0.02, "switch_probe": 0.1, "posed_indentation": 0.1}
 """Share of all cases that a family gets whose runs take minutes."""
 MADE: dict[str, tuple[str, Callable[[Generator], Case]]] = {
     "indentation": ("indentation", indentation),
