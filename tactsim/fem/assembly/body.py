@@ -21,6 +21,12 @@ from tactsim.fem.threads import loop_threads
 from tactsim.interfaces import Material
 
 ELASTIC_STEP = np.empty((6, 0, 0))
+VOLUME_STIFFNESS = 3.0
+"""What bodies in contact have as ``volume_stiffness``, see `Body`.
+
+Where a free face rolls onto a jaw or around a fillet, tissue that sticks beside it is strained without bound. Without this
+stiffness its volume ratios are 0.7 to 1.2 there however fine the elements are, and thin ones turn inside out; docs/theory/mesh.md
+has the figures."""
 
 
 @dataclass(frozen=True)
@@ -60,8 +66,9 @@ class Body:
 
     in its potential, with a multiple a of the shear modulus G. That is zero in every exact solution, so that it changes no order
     of convergence (grad-div stabilisation: Franca & Hughes 1988, doi:10.1016/0045-7825(88)90168-5; Olshanskii & Reusken 2004,
-    doi:10.1090/S0025-5718-03-01629-6). Where a material has no compiled form, its own methods are called at the points
-    (``interpreted``), several times slower.
+    doi:10.1090/S0025-5718-03-01629-6). Where a material relaxes, this resistance relaxes with its isochoric stress: all of a body
+    that is held relaxes alike, and no resistance outlasts the tissue's own stiffness. Where a material has no compiled form, its
+    own methods are called at the points (``interpreted``), several times slower.
 
     Parameters
     ----------
@@ -107,8 +114,8 @@ class Body:
         self.forms = tuple(compiled_form(material) for material in materials)
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
         self.shear_moduli = np.array([m.shear_modulus for m in materials])[self.regions]
-        resisting = volume_stiffness * self.shear_moduli
-        self.volume_stiffness = resisting / (1 + resisting * self.compliance)
+        at_once = np.array([_instantaneous_modulus(m) for m in materials])[self.regions]
+        self.volume_stiffness = volume_stiffness * self.shear_moduli / (1 + volume_stiffness * at_once * self.compliance)
 
     def with_relaxation(self, relaxation: RelaxationStep | None) -> Body:
         """The same body in a time step of materials that relax."""
@@ -158,12 +165,27 @@ class Body:
                 slopes[0, mine] = material.shear_modulus
         return slopes if self.relaxation is None else slopes * self.relaxation.scale[:, None]
 
-    def compiled_elastic_stress(self, state: Kinematics) -> Array:
-        """Isochoric second Piola-Kirchhoff stress (6, E, Q) in Pa, not scaled by a step of time; where a material has no compiled
-        form, its entries mean nothing."""
+    def volume_error(self, unknowns: Array, state: Kinematics) -> Array:
+        """Volume ratio less the one that the pressure asks for, at the quadrature points (E, Q).
+
+        .. math:: g(F) - p / K
+
+        It is J - 1 for exactly incompressible tissue; compressible tissue may change its volume as its pressure asks.
+        """
+        change = np.where(self.linear[:, None], np.trace(state.F) - 3, state.J - 1)
+        return change - self.compliance[:, None] * self.pressure(unknowns)
+
+    def compiled_elastic_stress(self, state: Kinematics, tension: Array) -> Array:
+        """Second Piola-Kirchhoff stress (6, E, Q) in Pa, isochoric but for a ``tension`` (E, Q) in Pa, not scaled by a step of
+        time; where a material has no compiled form, its entries mean nothing."""
         elastic, stress = self.with_relaxation(None), np.zeros((6, *state.J.shape))
-        self._kernels.elastic_stress(state.F, elastic.energy_slopes(state, second=False), self.linear, stress)
+        self._kernels.elastic_stress(state.F, elastic.energy_slopes(state, second=False), tension, self.linear, stress)
         return stress
+
+    @property
+    def volume_resistance(self) -> Array:
+        """kappa (E,) in Pa, in a step of time as much of it as has not relaxed."""
+        return self.volume_stiffness if self.relaxation is None else self.volume_stiffness * self.relaxation.scale
 
     def residual(self, unknowns: Array, state: Kinematics | None = None) -> Array:
         """Internal forces in N, then the volume constraints in m^3, shape (size,)."""
@@ -172,7 +194,8 @@ class Body:
         out = np.zeros(self.space.size)
         slopes, pattern = self.energy_slopes(state, second=False), self.pattern
         with loop_threads(len(self.regions)):
-            self._kernels.residual(u, p, self._tables, slopes, self._history_stress(), pattern.order, pattern.color_starts, out)
+            history_stress = self._history_stress()
+            self._kernels.residual(u, p, self._tables(), slopes, history_stress, pattern.order, pattern.color_starts, out)
         for part in self._interpreted:
             part.add_residual(self._at(part, unknowns, state), out)
         return out
@@ -186,7 +209,7 @@ class Body:
         slopes = self.energy_slopes(state, second=True)
         with loop_threads(len(self.regions)):
             places = (pattern.order, pattern.color_starts, pattern.indptr, pattern.offsets)
-            self._kernels.tangent(u, p, self._tables, slopes, self._history_stress(), *places, data)
+            self._kernels.tangent(u, p, self._tables(), slopes, self._history_stress(), *places, data)
         for part in self._interpreted:
             part.add_tangent(self._at(part, unknowns, state), pattern, data)
         return data
@@ -224,9 +247,13 @@ class Body:
     def _history_stress(self) -> Array:
         return ELASTIC_STEP if self.relaxation is None else self.relaxation.stress
 
-    @cached_property
     def _tables(self) -> tuple[Array, ...]:
         """What the compiled loops read of the mesh and the materials; elements without a compiled form have no weight there."""
+        return (*self._lasting_tables, self.volume_resistance)
+
+    @cached_property
+    def _lasting_tables(self) -> tuple[Array, ...]:
+        """Those of them that no step of time changes."""
         points = self.points
         compiled_elements = np.array([form is not None for form in self.forms])[self.regions]
         return (
@@ -238,7 +265,6 @@ class Body:
             points.pressure_values,
             self.linear | ~compiled_elements,
             self.compliance,
-            self.volume_stiffness,
         )
 
 

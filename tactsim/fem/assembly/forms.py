@@ -54,7 +54,7 @@ def tangent(body: Body, unknowns: Array) -> csr_matrix:
         without = lambda material, mine: material.tangent(F[:, :, mine], 0 * p[mine])  # noqa: E731
         moduli = _relaxed(body, moduli, moduli - _at_points(body, (3, 3, 3, 3), without)) + _history_tangent(body)
     slope = _at_points(body, (3, 3), lambda material, mine: material.volume_change_gradient(F[:, :, mine]))
-    moduli = moduli + body.volume_stiffness[:, None] * np.einsum("iJeq,kLeq->iJkLeq", slope, slope)
+    moduli = moduli + body.volume_resistance[:, None] * np.einsum("iJeq,kLeq->iJkLeq", slope, slope)
     B = B.reshape(*B.shape[:4], -1)
     K_uu = np.einsum("eq,iJeqm,iJkLeq,kLeqn->emn", weights, B, moduli, B, optimize=True)
     K_up = np.einsum("e,eq,iJeqm,iJeq,qv->emv", _share(body), weights, B, slope, N, optimize=True)
@@ -88,12 +88,12 @@ def _resisting(body: Body, F: Array, unknowns: Array) -> tuple[Array, Array]:
     p = body.pressure(unknowns)
     change = _at_points(body, (), lambda material, mine: material.volume_change(F[:, :, mine]))
     excess = change - p * body.compliance[:, None]
-    return excess, p + body.volume_stiffness[:, None] * excess
+    return excess, p + body.volume_resistance[:, None] * excess
 
 
 def _share(body: Body) -> Array:
     """Part (E,) of the volume constraint that is left to the pressure."""
-    return 1 - body.volume_stiffness * body.compliance
+    return 1 - body.volume_resistance * body.compliance
 
 
 def _relaxed(body: Body, whole: Array, pressure_part: Array) -> Array:

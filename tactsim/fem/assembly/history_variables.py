@@ -95,7 +95,7 @@ class HistoryVariables:
 
     @property
     def stress(self) -> Array:
-        """Isochoric part of the present stress (6, E, Q) in Pa."""
+        """Isochoric part of the present stress (6, E, Q) in Pa, with what is left of the resistance to changes of volume."""
         return self.series.equilibrium[:, None] * self.elastic + self.overstress.sum(axis=0)
 
     def at_slope_change(self) -> HistoryVariables:
@@ -128,17 +128,21 @@ class HistoryVariables:
         return share, -share * (self.elastic + time_step / length * (self.elastic - before))
 
 
-def elastic_stress(body: Body, state: Kinematics) -> Array:
+def elastic_stress(body: Body, state: Kinematics, unknowns: Array | None = None) -> Array:
     """Isochoric second Piola-Kirchhoff stress (6, E, Q) in Pa of the energies; the deviatoric stress if linear elastic.
 
-    Compiled but for materials without a compiled form; in numpy it was a sixth of a timed indentation.
+    With the ``unknowns`` also what resists a change of volume that their pressure does not ask for. Compiled but for materials
+    without a compiled form; in numpy it was a sixth of a timed indentation.
     """
-    stress = body.compiled_elastic_stress(state)
+    tension = np.zeros_like(state.J)
+    if unknowns is not None and body.volume_stiffness.any():
+        tension = body.volume_stiffness[:, None] * body.volume_error(unknowns, state)
+    stress = body.compiled_elastic_stress(state, tension)
     for index, material in enumerate(body.materials):
         if body.forms[index] is None:
             mine = body.regions == index
             F = state.F[:, :, mine]
-            P = material.first_piola_kirchhoff(F, np.zeros(F.shape[2:]))
+            P = material.first_piola_kirchhoff(F, tension[mine])
             stress[:, mine] = (P if body.linear[mine].all() else _solved(F, P))[ROWS_AND_COLUMNS]
     return stress
 

@@ -53,7 +53,7 @@ class InterpretedPart:
             B, stress = self._operator(part), self.stress(here)
             weighted = np.moveaxis(weights * stress.reshape(9, *weights.shape), 0, -1)
             forces = np.einsum("ep,epm->em", weighted.reshape(len(B), -1), B)
-            volumes = self._share * np.einsum("eq,eq,qv->ev", weights, change, N)
+            volumes = np.einsum("eq,eq,qv->ev", self._share(here) * weights, change, N)
             out += np.bincount(self.unknowns[part].ravel(), np.hstack([forces, volumes]).ravel(), out.size)
 
     def add_tangent(self, state: PointState, pattern: Pattern, data: Array) -> None:
@@ -63,8 +63,9 @@ class InterpretedPart:
             B, (count, points) = self._operator(part), weights.shape
             gradient = self.material.volume_change_gradient(here.F).reshape(9, count, points)
             moduli = self.moduli(self._resisting(here)[1]).reshape(9, 9, count, points)
-            moduli = np.moveaxis(weights * (moduli + self.volume_stiffness * gradient[:, None] * gradient), (0, 1), (-2, -1))
-            slope, weights = np.moveaxis(self._share * weights * gradient, 0, -1), self._share * weights
+            resistance, share = self._resistance(here), self._share(here)
+            moduli = np.moveaxis(weights * (moduli + resistance * gradient[:, None] * gradient), (0, 1), (-2, -1))
+            slope, weights = np.moveaxis(share * weights * gradient, 0, -1), share * weights
             across = B.transpose(0, 2, 1)
             K_uu = across @ (moduli @ B.reshape(count, points, 9, -1)).reshape(B.shape)
             K_up = across @ np.einsum("eqi,qv->eqiv", slope, N).reshape(count, 9 * points, -1)
@@ -94,15 +95,18 @@ class InterpretedPart:
             moduli if self.material.small_strain else moduli + np.einsum("ik,JLeq->iJkLeq", np.eye(3), state.history_stress[FULL])
         )
 
-    @property
-    def _share(self) -> float:
-        """Of the volume constraint, beside the resistance to what it leaves."""
-        return 1 - self.volume_stiffness * self.compliance
+    def _resistance(self, state: PointState) -> Array:
+        """kappa of `Body` in Pa, one for all elements or (E, 1)."""
+        return np.asarray(self.volume_stiffness * (1.0 if state.scale is None else state.scale[:, None]))
+
+    def _share(self, state: PointState) -> Array:
+        """Of the volume constraint, beside the resistance to what it leaves; one for all elements or (E, 1)."""
+        return 1 - self._resistance(state) * self.compliance
 
     def _resisting(self, state: PointState) -> tuple[Array, PointState]:
         """The volume change (E, Q) that the pressure does not ask for, and the state with the pressure that resists it."""
         change = self.material.volume_change(state.F) - self.compliance * state.pressure
-        return change, replace(state, pressure=state.pressure + self.volume_stiffness * change)
+        return change, replace(state, pressure=state.pressure + self._resistance(state) * change)
 
     def _parts(self) -> Iterator[slice]:
         return (slice(first, first + CHUNK) for first in range(0, len(self.elements), CHUNK))

@@ -183,14 +183,16 @@ def tangent(u, p, tables, W, history_stress, order, starts, indptr, offsets, dat
 
 
 @numba.njit(cache=True)
-def elastic_stress(F, W, linear, out):  # type: ignore[no-untyped-def]
-    """Isochoric second Piola-Kirchhoff stress at F (3, 3, E, Q) and slopes W into ``out`` (6, E, Q)."""
+def elastic_stress(F, W, tension, linear, out):  # type: ignore[no-untyped-def]
+    """Second Piola-Kirchhoff stress at F (3, 3, E, Q), slopes W and tension (E, Q) into ``out`` (6, E, Q)."""
     here, cof, work = np.empty(9), np.empty(9), np.empty((6, 9))
     for e in range(F.shape[2]):
         for q in range(F.shape[3]):
             for m in range(9):
                 here[m] = F[m // 3, m % 3, e, q]
             point_stress(here, W[:, e, q], linear[e], work, cof)
+            for m in range(9):
+                work[0, m] += tension[e, q] * cof[m]
             pulled_back(work, linear[e], out[:, e, q])
 
 

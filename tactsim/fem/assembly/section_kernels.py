@@ -186,13 +186,15 @@ def tangent(u, p, tables, W, history_stress, order, starts, indptr, offsets, dat
 
 
 @numba.njit(cache=True, fastmath={"contract"})
-def elastic_stress(F, W, linear, out):  # type: ignore[no-untyped-def]
-    """Isochoric second Piola-Kirchhoff stress at F (3, 3, E, Q) and slopes W into ``out`` (6, E, Q), which holds zeros."""
+def elastic_stress(F, W, tension, linear, out):  # type: ignore[no-untyped-def]
+    """Second Piola-Kirchhoff stress at F (3, 3, E, Q), slopes W and tension (E, Q) into ``out`` (6, E, Q), which holds zeros."""
     P, slope, S = np.empty(5), np.empty(5), np.empty(4)
     for e in range(F.shape[2]):
         for q in range(F.shape[3]):
             here = F[0, 0, e, q], F[0, 1, e, q], F[1, 0, e, q], F[1, 1, e, q], F[2, 2, e, q]
             isochoric_stress(here, W[0, e, q], W[1, e, q], linear[e], P, slope)
+            for m in range(5):
+                P[m] += tension[e, q] * slope[m]
             pulled_back(here, P, linear[e], S)
             for c in range(4):
                 out[c, e, q] = S[c]

@@ -16,20 +16,8 @@ POOR_SHARE = 1e-3
 """Part of the volume with poor ratios of which a user is warned: a few points at sharp corners are less and do no harm."""
 
 
-def volume_error(body: Body, state: ContactEquilibrium) -> Array:
-    """Volume ratio less the one that the pressure asks for, at the quadrature points (E, Q).
-
-    .. math:: g(F) - p / K
-
-    It is J - 1 for exactly incompressible tissue; compressible tissue may change its volume as its pressure asks.
-    """
-    kinematics = state.kinematics
-    change = np.where(body.linear[:, None], np.trace(kinematics.F) - 3, kinematics.J - 1)
-    return change - body.compliance[:, None] * body.pressure(state.unknowns)
-
-
 def poor_share(body: Body, error: Array) -> float:
-    """Part of the volume with poor ratios, of which `volume_error` says (E, Q) how far off they are."""
+    """Part of the volume with poor ratios, of which an ``error`` (E, Q) says how far off they are."""
     weights = body.points.weights
     return float(weights[np.abs(error) > POOR_RATIO].sum() / weights.sum())
 
@@ -42,7 +30,7 @@ class VolumeRatios:
 
     def poor_share(self, body: Body, state: ContactEquilibrium) -> float:
         """Part of the volume with poor ratios in a state."""
-        error = volume_error(body, state)
+        error = body.volume_error(state.unknowns, state.kinematics)
         share = poor_share(body, error)
         if share > self.worst:
             self.worst, ratios = share, state.kinematics.J[np.abs(error) > POOR_RATIO]

@@ -11,7 +11,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair
 from tactsim.errors import InputError
-from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.fem.assembly.body import VOLUME_STIFFNESS, Body, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.regularising_springs import RegularisingSprings
 from tactsim.fem.assembly.space import FACET_POINTS, TaylorHood
@@ -40,11 +40,6 @@ START_PATIENCE = 6
 """Iterations in which Newton halves the residual where it finds to the equilibrium: three in most closings, five in few cells."""
 LEAST_STRETCH = 0.5
 """Of a first guess."""
-VOLUME_STIFFNESS = 3.0
-"""Stiffness against changes of volume that the pressure does not ask for, over the shear modulus; see `Body`.
-
-Where a free face rolls onto a jaw, tissue that sticks beside it is strained without bound. Without this stiffness its volume
-ratios are 0.7 to 1.2 there however fine the cells are, and thin cells turn inside out; docs/theory/mesh.md has the figures."""
 
 
 class GraspModel:

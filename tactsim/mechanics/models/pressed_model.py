@@ -12,7 +12,7 @@ from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair, ContactState
 from tactsim.errors import InputError
-from tactsim.fem.assembly.body import Body, RelaxationStep
+from tactsim.fem.assembly.body import VOLUME_STIFFNESS, Body, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.space import Measure, TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
@@ -62,7 +62,7 @@ class PressedModel(ABC):
             check_in_plane(material)
         self.mesh, self.top, self.base = mesh, top, base
         self.space = TaylorHood(mesh.nodes, mesh.elements, measure, mesh.regions)
-        self.body = Body(self.space, materials, mesh.regions)
+        self.body = Body(self.space, materials, mesh.regions, volume_stiffness=VOLUME_STIFFNESS)
         dim = self.space.dim
         self.points = self.space.surface_points(top)
         self.surface = SurfaceAssembly(self.points, self.body.pattern, dim)

@@ -19,7 +19,7 @@ from tactsim.fem.paths.loading import Event, PathFollower, StepControl
 from tactsim.fem.paths.progress import check_steps
 from tactsim.fem.paths.time_steps import TimeControl, TimeEvent, TimeMarcher
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
-from tactsim.mechanics.fields.volume_ratios import POOR_SHARE, poor_share, volume_error
+from tactsim.mechanics.fields.volume_ratios import POOR_SHARE, poor_share
 
 JUMP = StepControl(first=1.0, largest=1.0, smallest=1e-5)
 """Steps of a sudden change, as parts of it: at once if Newton can."""
@@ -219,7 +219,7 @@ class TimedPath:
         """Whether more of the body than before misses the volume that its pressure asks for, and than is warned of, or an element
         is about to turn inside out that was not."""
         body, now, then = self._problem.body, reached.contact, before.contact
-        share, earlier = (poor_share(body, volume_error(body, state)) for state in (now, then))
+        share, earlier = (poor_share(body, body.volume_error(state.unknowns, state.kinematics)) for state in (now, then))
         collapsed, already = (collapsed_in_words(body, state.kinematics, state.unknowns) for state in (now, then))
         return share > max(POOR_SHARE, earlier) or (collapsed is not None and already is None)
 
@@ -249,7 +249,8 @@ class TimedPath:
         contact = self._problem.equilibrium(now.contact, loads, guess, relaxation)
         history_variables = None
         if now.history_variables is not None:
-            history_variables = now.history_variables.advanced(elastic_stress(self._problem.body, contact.kinematics), step)
+            elastic = elastic_stress(self._problem.body, contact.kinematics, contact.unknowns)
+            history_variables = now.history_variables.advanced(elastic, step)
         return TimedState(time, loads, contact, history_variables, relaxation)
 
     def _error(self, interval: TimeInterval, state: TimedState) -> float:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from solids import assert_close, body_of, box
 
 from tactsim.fem.assembly import forms
@@ -129,3 +130,21 @@ def test_the_elastic_stress_is_that_of_the_material(measure, kind):
     assert_close(stress, expected[ROWS_AND_COLUMNS], ROUND_OFF)
     with pytest.raises(AssertionError):
         assert_close(stress, expected.swapaxes(0, 1)[::-1][ROWS_AND_COLUMNS], ROUND_OFF)
+
+
+@pytest.mark.parametrize("measure", MEASURES)
+@pytest.mark.parametrize("kind", [name for name, _ in KINDS])
+def test_what_has_relaxed_and_what_has_not_yet_is_the_elastic_force(measure, kind):
+    """With the resistance to changes of volume; mutant: that is no part of the history."""
+    material, other = dict(KINDS)[kind].example(), MooneyRivlin2.example()
+    body = body_of(mesh_of(measure), measure, material, other, volume_stiffness=3.0)
+    unknowns, left = random_unknowns(body, 4), np.random.default_rng(5).uniform(0.2, 1.0, len(body.regions))
+    forces = slice(body.space.displacement_size)
+    whole, state = body.residual(unknowns)[forces], body.kinematics(unknowns)
+
+    def check(stress):
+        step = RelaxationStep(left, (1 - left)[:, None] * stress)
+        assert_close(body.with_relaxation(step).residual(unknowns)[forces], whole, ROUND_OFF)
+
+    check(elastic_stress(body, state, unknowns))
+    assert_kills(check, without=(elastic_stress(body, state),))

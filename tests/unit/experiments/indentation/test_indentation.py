@@ -156,10 +156,10 @@ def test_refined_state_is_the_same_state():
 
     def on_the_base(model, unknowns):
         forces = model.body.residual(unknowns)[: model.space.displacement_size].reshape(-1, model.space.dim)
-        return forces[model.base_nodes].sum(axis=0)
+        return forces[model.base_nodes].sum(axis=0)[1]  # those along the radius have no resultant
 
-    np.testing.assert_allclose(on_the_base(model, state.unknowns), model.base_force(state), rtol=1e-12)
-    np.testing.assert_allclose(on_the_base(finer, same.unknowns), model.base_force(state), rtol=0.02)
+    np.testing.assert_allclose(on_the_base(model, state.unknowns), model.base_force(state)[1], rtol=1e-12)
+    np.testing.assert_allclose(on_the_base(finer, same.unknowns), model.base_force(state)[1], rtol=0.02)
     assert finer.highest(same.unknowns, 1.5e-3) == pytest.approx(model.highest(state.unknowns, 1.5e-3), abs=1e-15)
     solved = finer.equilibrium(same, same.load, same.unknowns)
     assert finer.base_force(solved)[1] == pytest.approx(model.base_force(state)[1], rel=0.02)
