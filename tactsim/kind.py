@@ -29,6 +29,21 @@ class Kind(FrozenModel, ABC):
         if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
             register(cls)
 
+    def require_own_kind(self) -> None:
+        """Refuse an instance whose class has the kind of its base, as which its case would be written and read again.
+
+        Raises
+        ------
+        ValueError
+            Naming both classes, and what the class lacks; pydantic adds the place.
+        """
+        cls = type(self)
+        named = next(one for one in cls.__mro__ if "kind" in vars(one).get("__annotations__", {}))
+        if named is not cls:
+            own = cls.__name__.lower()
+            borrowed = f"{cls.__name__} has the kind {self.kind!r} of {named.__name__}, as which a case would name it"
+            raise ValueError(f"{borrowed}; needed: kind: Literal[{own!r}] = {own!r}")
+
 
 class CaseKind(Kind):
     """What a case file names by its ``kind``."""

@@ -202,9 +202,12 @@ class Registered:
         ------
         PydanticKnownError, PydanticCustomError
             If it is no mapping, has no kind, or one that the field does not take.
+        ValueError
+            If it is an instance with the kind of another class.
         """
         if isinstance(value, self.base):
             self._class(value.kind)
+            value.require_own_kind()
             return value
         if not isinstance(value, Mapping):
             raise PydanticKnownError("model_attributes_type")

@@ -13,7 +13,7 @@ from tactsim.cli import console
 from tactsim.cli.data_actions import CONFUSION, RANKING
 from tactsim.cli.data_actions import EXAMPLES as EXAMPLES
 from tactsim.cli.data_actions import add_arguments as add_arguments
-from tactsim.errors import NOT_AS_RECORDED, InputError, StorageError, TactsimError
+from tactsim.errors import NOT_AS_RECORDED, InputError, InvalidQuantity, StorageError, TactsimError
 from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
@@ -200,8 +200,13 @@ def _noise(arguments: argparse.Namespace) -> float | None:
     """What is added to the readings in N, None if nothing is said of it."""
     from tactsim.units import parse_quantity
 
-    noise = None if arguments.noise is None else float(parse_quantity(arguments.noise, "N"))
-    if noise is not None and not 0 <= noise < float("inf"):
+    if arguments.noise is None:
+        return None
+    try:
+        noise = float(parse_quantity(arguments.noise, "N"))
+    except InvalidQuantity as error:
+        raise InvalidQuantity(f"--noise: {error}") from None
+    if not 0 <= noise < float("inf"):
         raise InputError(f"--noise {arguments.noise}; allowed: a finite force that is not negative, such as '2 mN'")
     return noise
 

@@ -49,7 +49,7 @@ PROGRESS_SECONDS = 5.0
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
-    parser.add_argument("case", metavar="CASE", type=Path, help="sweep file (YAML)")
+    parser.add_argument("case", metavar="CASE", type=Path, help="sweep file (YAML), or the name of a shipped sweep")
     parser.add_argument("--out", metavar="STORE", type=Path, required=True, help="folder of the data set, such as lumps.zarr")
     parser.add_argument("--samples", metavar="N", type=int, help="number of samples (default: that of the file)")
     place = parser.add_mutually_exclusive_group()

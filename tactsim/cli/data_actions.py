@@ -10,6 +10,7 @@ examples:
   tactsim data check lumps.zarr
   tactsim data info lumps.zarr
   tactsim data export lumps.zarr --to lumps_shards --split train
+  tactsim run grasp_plain --set experiment.loading.pieces.0.to="1.2 mm" --set experiment.time.steps=12 --out results/plain
   tactsim data train lumps.zarr --reference results/plain --out lumps_estimator.npz
   tactsim data rank judged.zarr --reference results/plain --learned lumps_estimator.npz --out ranking
   tactsim data confusion classes.zarr --reference results/plain --noise '0.63 mN' --out confusion

@@ -37,6 +37,7 @@ def read_material(value: Any, info: ValidationInfo) -> Material:
         Naming the wrong key, value, set or kind; pydantic adds the place.
     """
     if isinstance(value, Material):
+        value.require_own_kind()
         return value
     try:
         if isinstance(value, str):

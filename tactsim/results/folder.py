@@ -20,6 +20,7 @@ from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
 from tactsim.storage.building import (
     begin,
+    is_empty,
     is_marked,
     moved_aside,
     remove,
@@ -95,6 +96,8 @@ class OutputFolder:
         """
         with naming(self.path):
             settle(self.partial)
+            if is_empty(self.path):
+                self.path.rmdir()
             if not os.path.lexists(self.path):
                 self.partial.rename(self.path)
                 return None

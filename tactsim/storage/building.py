@@ -77,7 +77,7 @@ def refuse_taken(place: Path) -> None:
     StorageError
         If it is taken.
     """
-    if os.path.lexists(place) and not _is_empty(place):
+    if os.path.lexists(place) and not is_empty(place):
         raise StorageError(f"{one_line(place)} exists; nothing is replaced: choose another place, or move it away")
 
 
@@ -143,7 +143,7 @@ def _move(content: Path, place: Path) -> None:
     """Moves without replacing; the content is on the disk before its name is."""
     settle(content)
     if content.is_dir():
-        if _is_empty(place):
+        if is_empty(place):
             place.rmdir()
         refuse_taken(place)
         content.rename(place)
@@ -163,5 +163,6 @@ def _move_file(content: Path, place: Path) -> None:
         content.rename(place)
 
 
-def _is_empty(place: Path) -> bool:
+def is_empty(place: Path) -> bool:
+    """Whether a folder stands at a place, not a link to one, and nothing in it."""
     return place.is_dir() and not place.is_symlink() and not any(place.iterdir())

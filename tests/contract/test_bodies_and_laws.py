@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 from tactsim.contact.traction import ContactPair, ContactState
-from tactsim.interfaces import ContactLaw, RigidBody
+from tactsim.errors import InputError
+from tactsim.interfaces import ContactLaw, Experiment, RigidBody
 from tactsim.registry import kinds
 
 BODIES = kinds(RigidBody)
@@ -124,6 +125,16 @@ def test_a_pair_has_friction_where_its_law_and_its_mask_allow_it():
     assert ContactPair(plane, rough, friction_mask=np.array([0.0, 1.0])).has_friction
     assert not ContactPair(plane, rough, friction_mask=np.zeros(2)).has_friction
     assert not ContactPair(plane, smooth).has_friction
+
+
+def test_a_law_with_the_kind_of_another_one_is_refused_in_a_case():
+    class Slippery(LAWS["coulomb"]):
+        def traction_limit(self, pressure):
+            return super().traction_limit(pressure) / 2
+
+    press = kinds(Experiment)["indentation"].example()
+    with pytest.raises(InputError, match="contact: Slippery has the kind 'coulomb' of Coulomb, as which a case would name it"):
+        type(press)(**(dict(press) | {"contact": Slippery(friction=0.5)}))
 
 
 def test_friction_that_begins_at_a_pressure_is_friction():

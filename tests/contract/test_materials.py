@@ -15,6 +15,7 @@ from tactsim.interfaces import Material
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.models.specimen import Specimen
 from tactsim.registry import forget, kinds
 
 KINDS = kinds(Material)
@@ -247,6 +248,25 @@ def test_two_classes_of_one_kind_are_refused_with_both_modules():
             kind: Literal["neo_hookean"] = "neo_hookean"
 
     assert kinds(Material)["neo_hookean"] is NeoHookean
+
+
+def test_a_law_with_the_kind_of_another_one_is_refused_in_a_case():
+    """It was computed, and written as the law whose kind it has."""
+
+    class Doubled(NeoHookean):
+        def energy(self, I1, I2):
+            return 2 * super().energy(I1, I2)
+
+        def energy_gradient(self, I1, I2):
+            return tuple(2 * one for one in super().energy_gradient(I1, I2))
+
+        def energy_hessian(self, I1, I2):
+            return tuple(2 * one for one in super().energy_hessian(I1, I2))
+
+    words = "Doubled has the kind 'neo_hookean' of NeoHookean, .*; needed: kind: Literal.'doubled'. = 'doubled'"
+    with pytest.raises(InputError, match=words):
+        Specimen(material=Doubled(c10=2e3), thickness=10e-3, radius=15e-3)
+    assert Specimen(material=NeoHookean(c10=2e3), thickness=10e-3, radius=15e-3).material.shear_modulus == 4e3
 
 
 def test_a_wrong_energy_is_seen():

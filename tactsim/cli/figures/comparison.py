@@ -77,7 +77,7 @@ def _bars(comparison: Comparison, above_maps: bool) -> list[Column]:
 def _draw_bars(figure: FigureBase, comparison: Comparison, columns: Sequence[Column]) -> None:
     axes = figure.subplots(max(1, len(columns)), squeeze=False)[:, 0]
     if not columns:
-        axes[0].text(0.5, 0.5, "no number that two of the results have", ha="center", va="center")
+        axes[0].text(0.5, 0.5, "no two of the results share a number", ha="center", va="center")
         axes[0].set_axis_off()
     for axis, column in zip(axes, columns, strict=False):
         heights = [np.nan if value is None else value for value in column.values]

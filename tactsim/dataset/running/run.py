@@ -87,9 +87,10 @@ class Tally:
     def summary(self) -> list[str]:
         """Lines at the end: counts, rate, the slowest samples, and failures by reason."""
         seconds = time.monotonic() - self.begin
-        lines = [f"{self.done} samples done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
+        noun = "sample" if self.done == 1 else "samples"
+        lines = [f"{self.done} {noun} done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
         if self.before:
-            lines.append(f"{self.before} samples were there before")
+            lines.append(f"{self.before} {'sample was' if self.before == 1 else 'samples were'} there before")
         times = np.concatenate([np.zeros((0, 2)), *self.times])
         slowest = times[np.argsort(-times[:, 1], kind="stable")[:SLOWEST]]
         if (slowest[:, 1] > WORTH_A_LINE).any():

@@ -272,7 +272,7 @@ def test_bars_show_only_what_two_results_have() -> None:
     """Six bars of one result were all that a comparison of an indentation with a film showed."""
     made = {name: replace(grasped(1, [[0.1]]), units={}, quantities={name: Quantity(2.0, "N", "")}) for name in ("one", "two")}
     heads, texts = heads_and_texts(made)
-    assert (heads, texts) == ([], ["no number that two of the results have"])
+    assert (heads, texts) == ([], ["no two of the results share a number"])
 
 
 def test_arrays_are_compared_by_their_largest_and_round_off_is_no_difference() -> None:

@@ -143,3 +143,5 @@ def test_the_command_line_says_what_is_missing(store: Path, capsys: pytest.Captu
     assert "train: --out w.txt is no place for weights; name a file ending in .npz" in capsys.readouterr().err
     assert main(["data", "rank", str(store), "--reference", "x", "--noise", "-1 mN"]) == 2
     assert "--noise" in capsys.readouterr().err
+    assert main(["data", "rank", str(store), "--reference", "x", "--noise", "0.6"]) == 2
+    assert "--noise: '0.6' has no unit" in capsys.readouterr().err

@@ -304,6 +304,9 @@ def test_progress_reports_rate_time_left_and_reasons() -> None:
     assert tally.line() == "10 of 100 samples, 0 failed; computing the first for 10 s"
     tally.add([*["the tissue buckles\nthe mesh is coarse"] * 2, *[""] * 16], ["stopped at 3.5e-2 mm", "stopped at 7 mm"])
     assert tally.line() == "30 of 100 samples, 2 failed, 2 samples/s, 35 s left"
+    one = Tally(samples=2, before=1, begin=time.monotonic() - 10)
+    one.add([""], [])
+    assert one.summary()[:2] == ["1 sample done, 0 failed in 10 s (360 samples/h)", "1 sample was there before"]
     lines = tally.summary()
     assert lines[0] == "18 samples done, 2 failed in 10 s (2 samples/s)"
     assert lines[2] == "  2 x stopped at 0.035 to 7 mm"

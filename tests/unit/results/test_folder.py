@@ -57,6 +57,14 @@ def test_an_earlier_result_needs_permission_to_give_way(tmp_path: Path) -> None:
     assert os.listdir(tmp_path) == ["out"]
 
 
+@pytest.mark.parametrize("keep", [False, True])
+def test_an_empty_folder_is_no_earlier_result(tmp_path: Path, keep: bool) -> None:
+    (tmp_path / "out").mkdir()
+    assert publish(tmp_path / "out", keep=keep) is None
+    assert mark_of(tmp_path / "out") == "new"
+    assert os.listdir(tmp_path) == ["out"]
+
+
 def test_an_earlier_result_can_be_kept(tmp_path: Path) -> None:
     make_result(tmp_path / "out")
     assert publish(tmp_path / "out", replace=True, keep=True) == tmp_path / "out.earlier"

@@ -75,7 +75,8 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
         _draw_matrix(axis, grasp, side, scale)
         _draw_surroundings(axis, grasp.scene, side, bodies)
         factor, unit = grasp.force_scale
-        axis.set_title(f"{side} jaw ({LETTERS[side]}): {factor * grasp.forces[side].sum():.3g} {unit} on the taxels", loc="left")
+        force = _three_digits(factor * grasp.forces[side].sum())
+        axis.set_title(f"{side} jaw ({LETTERS[side]}): {force} {unit} on the taxels", loc="left")
         _seen_from_above(axis)
         axis.tick_params(length=2.5)
     if MapsLayout.of(grasp.scene).columns > 1:
@@ -112,6 +113,11 @@ def draw_plan(axis: Axes, result: Result) -> None:
     _seen_from_above(axis)
 
 
+def _three_digits(value: float) -> str:
+    """A number with three digits that count, zeros at its end included."""
+    return f"{value:#.3g}".rstrip(".")
+
+
 def _seen_from_above(axis: Axes) -> None:
     axis.set(aspect="equal", xlabel="x in mm", ylabel="y in mm (front at the bottom)")
     axis.spines[:].set_visible(False)
@@ -141,7 +147,7 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
             "path_effects": [withStroke(linewidth=2.2, foreground=colours(shade))],  # a rim: no line runs through letters
         }
         x, y = corner[0] + size / 2, corner[1] + size / 2
-        written = f"{scale.factor * pressure:#.3g}".rstrip(".")
+        written = _three_digits(scale.factor * pressure)
         axis.text(x, y, f"{written} {scale.unit}", va="bottom", fontsize=large, fontweight="bold", **style)
         force = f"{float(f'{per_newton * grasp.forces[side][row, column]:.2g}'):g}"
         axis.text(x, y - 0.06 * size, f"{force} {force_unit}", va="top", fontsize=0.72 * large, **style)

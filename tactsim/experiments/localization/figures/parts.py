@@ -43,7 +43,7 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
     """The result in words."""
     quantities = result.quantities
     if not quantities["present"].value:
-        return ("Nothing there.",)
+        return tuple(wrap(f"Nothing found: {result.reason}", LINE))
     digits = decimals_of_places(scene.size)
     places = [f"({', '.join(f'{1e3 * value:.{digits}f}' for value in estimate.center)}) mm" for estimate in scene.estimates]
     lines = [result.reason[:1].upper() + result.reason[1:]] if "class_probabilities" in quantities or len(places) > 1 else []

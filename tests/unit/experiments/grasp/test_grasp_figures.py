@@ -239,6 +239,16 @@ def test_pressures_that_would_not_be_legible_are_left_to_the_colours():
     assert not re.search(r"\d kPa", words)
 
 
+def test_sums_of_the_taxels_keep_their_zeros():
+    """2.61 N stood beside 2.6 N."""
+    layout = TaxelLayout()
+    pressure = np.full((layout.rows, layout.columns), 2.6 / layout.area / layout.rows / layout.columns)
+    result = made_up(layout=layout)
+    loads = {f"taxel_force_{side}": Quantity((pressure * layout.area).tolist(), "N", "") for side in JAWS}
+    words = text_of(maps_figure(replace(result, quantities=result.quantities | loads)))
+    assert "upper jaw (U): 2.60 N on the taxels" in words
+
+
 def test_large_matrix_shows_colours_only():
     words = text_of(maps_figure(made_up(layout=TaxelLayout(rows=12, columns=12, pitch=2.5e-3, size=2e-3))))
     assert "N on the taxels" in words

@@ -141,6 +141,16 @@ def test_the_views_say_whether_it_is_softer_or_stiffer_than_the_tissue(contrast,
     assert not [line for line in localized(result).findings if "contrast" in line]
 
 
+def test_the_views_say_why_nothing_is_found(folders):
+    result = run(folders)
+    nothing = replace(
+        result,
+        quantities=result.quantities | {"present": Quantity(0.0, "1", "")},
+        reason="no inclusion (probability 0.895)",
+    )
+    assert localized(nothing).findings == ("Nothing found: no inclusion (probability 0.895)",)
+
+
 def test_several_places_are_all_named_in_the_result(folders, tmp_path):
     apart = PLAIN.copy()
     apart[:, 0, 0] += 0.4
