@@ -82,7 +82,8 @@ def _begun(problem: BoundaryValueSetup) -> tuple[TimedPath, BoundaryValueRecord]
     """The path of a problem at its start, and what will record it."""
     model = posed(problem)
     probes = Probes(problem, model)
-    histories = [(problem.amplitude if one is None else one.amplitude or problem.amplitude).history() for one in model.followed]
+    common = problem.common_amplitude
+    histories = [(common if one is None else one.amplitude or common).history() for one in model.followed]
     materials, relaxes = list(problem.materials.values()), problem.relaxes
     policy = StepPolicy(
         problem.time, shortest_relaxation_time(materials), per_ramp=problem.steps, per_period=problem.steps, sparing=not relaxes
