@@ -210,9 +210,11 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     def warnings(self) -> list[str]:
         """Warnings about volumes and ellipticity, about an unstable end, and about rigid bodies that never touched."""
         together = zip(self.problem.contacts, self._touched, strict=True)
-        unstable = unstable_in_words(*self._kept["last"])
+        model, last = self._kept["last"]
+        unstable = unstable_in_words(model, last)
         return [
             *super().warnings(),
+            *self._probes.doubts(last),
             *([unstable] if unstable else []),
             *(
                 f"rigid body {number} ({one.body.kind} from the {one.side}) never touches the body at {one.face}, its force is "
