@@ -40,6 +40,12 @@ class Condition(FrozenModel):
     amplitude: Amplitude | None = None
     """Course in time; by default that of the whole problem."""
 
+    @property
+    def varies(self) -> bool:
+        """Whether it prescribes anything but zero, so that its course in time matters."""
+        slopes = (slope for along in getattr(self, "slopes", {}).values() for slope in along.values())
+        return any((*(getattr(self, name, None) for name in ("x", "y", "z", "r", "angle", "pressure")), *slopes))
+
 
 class FaceCondition(Condition):
     """Something prescribed on a face or on a part of it."""

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.experiments.boundary_value.conditions import FaceCondition
-from tactsim.experiments.boundary_value.posing import PosedProblem
+from tactsim.experiments.boundary_value.conditions import ContactCondition, FaceCondition
+from tactsim.experiments.boundary_value.posing import Load, PosedProblem
 from tactsim.mechanics.paths.history_path import TimedState
 
 
@@ -30,20 +30,32 @@ class FaceForces:
         self._posed, self._model = posed, posed.model
         shares = _shares(posed)
         self._shares = {name: shares[name] for name in faces}
+        self._part_of_edges = {name: np.where(share < 1, share, 0.0) for name, share in self._shares.items()}
 
     def at(self, state: TimedState) -> dict[str, Array]:
         """Nodal forces (n, d) in N that act on each of the ``faces`` in a state."""
         if not self._shares:
             return {}
-        now, model = state.contact, self._model
-        loads, contacts = model.load_forces(now.unknowns, state.loads), model.contact_forces(now)
-        own = [*zip(self._posed.loads, loads, strict=True), *zip(self._posed.contacts, contacts, strict=True)]
-        reaction = model.internal_forces(now.unknowns, state.relaxation) - sum(force for _, force in own)
+        own, reaction = self._acting(state)
         return {
             face: share * reaction
             + sum(force for condition, force in own if isinstance(condition, FaceCondition) and condition.face == face)
             for face, share in self._shares.items()
         }
+
+    def of_edges(self, state: TimedState) -> dict[str, Array]:
+        """What of ``at`` is an equal part of a reaction that several faces take: the truth is anything up to all of it."""
+        if not any(part.any() for part in self._part_of_edges.values()):
+            return {}
+        _, reaction = self._acting(state)
+        return {face: part * reaction for face, part in self._part_of_edges.items() if part.any()}
+
+    def _acting(self, state: TimedState) -> tuple[list[tuple[Load | ContactCondition, Array]], Array]:
+        """Nodal forces (n, d) in N of every load and rigid body, and the reaction to what is prescribed."""
+        now, model = state.contact, self._model
+        loads, contacts = model.load_forces(now.unknowns, state.loads), model.contact_forces(now)
+        own = [*zip(self._posed.loads, loads, strict=True), *zip(self._posed.contacts, contacts, strict=True)]
+        return own, model.internal_forces(now.unknowns, state.relaxation) - sum(force for _, force in own)
 
 
 def _shares(posed: PosedProblem) -> dict[str, Array]:

@@ -61,7 +61,7 @@ class Parts:
             if not inside.any() or (touched & ~inside).any():
                 fault = "ends within cells" if inside.any() else "holds no cell"
                 raise ValueError(
-                    f"regions.{number}.within: the part within {within_in_words(within)} {fault}; let cells end there"
+                    f"regions.{number}.within: the part within {within_in_words(within)} {fault}; {self._ending(within)}"
                 )
             numbers[inside] = number + 1
         if not regions:
@@ -116,6 +116,15 @@ class Parts:
                 f"within: no facet of {condition.face} lies within {part}; let cells end there, or take a wider part"
             )
         return facets[inside]
+
+    def _ending(self, within: Within) -> str:
+        """What lets cells end at the ends of a region."""
+        if "r" in within and self.dimension == "plane_strain" and "inner" not in self.domain.faces:
+            return (
+                "cells of a section without a hole end on no circle: take dimension: axisymmetric, or 3d, and hold the "
+                "displacement z of bottom and top at zero"
+            )
+        return "let cells end there"
 
     def _within(self, within: Within, places: Array) -> tuple[Array, Array]:
         """Which cells or facets (n,) lie in a part by the places (n, k, d) of their nodes in m, and which reach into it."""

@@ -23,6 +23,7 @@ from tactsim.experiments.boundary_value.geometry import AXES
 from tactsim.experiments.boundary_value.posing import PosedProblem
 from tactsim.experiments.boundary_value.setup import BoundaryValueSetup
 from tactsim.mechanics.fields.point_values import BodyPoint, cauchy_stress, von_mises
+from tactsim.mechanics.outcome.success import LARGEST_FORCE_ERROR
 from tactsim.mechanics.paths.history_path import TimedState
 
 
@@ -54,6 +55,23 @@ class Probes:
         stress = cauchy_stress(body, now.unknowns, now.kinematics, state.isochoric)
         present = Present(state, stress, self._forces.at(state))
         return {name: self._problem.asked[name].factor * evaluate(present) for name, evaluate in self._evaluations.items()}
+
+    def doubts(self, state: TimedState) -> list[str]:
+        """Forces on faces of which more than is allowed stands at edges that other faces hold, too."""
+        forces, parts = self._forces.at(state), self._forces.of_edges(state)
+        doubts = []
+        for name, one in self._problem.asked.items():
+            if not isinstance(one, AskedForce) or one.face not in parts:
+                continue
+            axis = self._axes.index(one.component)
+            part, size = parts[one.face][:, axis].sum(), np.abs(forces[one.face][:, axis]).sum()
+            if abs(part) > LARGEST_FORCE_ERROR * size:
+                doubts.append(
+                    f"{name}: {abs(part) / size:.1%} of the force on {one.face} is at edges that other faces or planes of "
+                    "symmetry hold, too; each is given an equal part, so that the force is uncertain by as much: shorter cells "
+                    "beside these edges make it less"
+                )
+        return doubts
 
     def _evaluation(self, one: AnyAsked) -> Evaluation:
         """How a number is evaluated; what it names is looked up once."""

@@ -82,7 +82,8 @@ def _begun(problem: BoundaryValueSetup) -> tuple[TimedPath, BoundaryValueRecord]
     """The path of a problem at its start, and what will record it."""
     model = posed(problem)
     probes = Probes(problem, model)
-    histories = [(problem.amplitude if one is None else one.amplitude or problem.amplitude).history() for one in model.followed]
+    common = problem.common_amplitude
+    histories = [(common if one is None else one.amplitude or common).history() for one in model.followed]
     materials, relaxes = list(problem.materials.values()), problem.relaxes
     policy = StepPolicy(
         problem.time, shortest_relaxation_time(materials), per_ramp=problem.steps, per_period=problem.steps, sparing=not relaxes
@@ -209,9 +210,11 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     def warnings(self) -> list[str]:
         """Warnings about volumes and ellipticity, about an unstable end, and about rigid bodies that never touched."""
         together = zip(self.problem.contacts, self._touched, strict=True)
-        unstable = unstable_in_words(*self._kept["last"])
+        model, last = self._kept["last"]
+        unstable = unstable_in_words(model, last)
         return [
             *super().warnings(),
+            *self._probes.doubts(last),
             *([unstable] if unstable else []),
             *(
                 f"rigid body {number} ({one.body.kind} from the {one.side}) never touches the body at {one.face}, its force is "

@@ -85,7 +85,7 @@ class BoundaryValueSetup(FrozenModel):
     """Rigid bodies that touch it."""
     amplitude: Amplitude = Field(default_factory=ramp)
     """Factor over time by which every condition without an amplitude of its own is multiplied; by default it rises evenly from
-    0 to 1 within a second."""
+    0 to 1 within a second, which lengthens no problem whose conditions without one are zero."""
     asked: Annotated[dict[AskedName, AnyAsked], Field(min_length=1)]
     """Name -> number that is asked for."""
     steps: Annotated[int, Field(ge=1, le=MOST_STEPS)] = 10
@@ -127,15 +127,25 @@ class BoundaryValueSetup(FrozenModel):
         return [*self.conditions, *self.contacts, *(motion for contact in self.contacts for motion in contact.motions)]
 
     @property
+    def _given(self) -> list[Amplitude]:
+        """Every amplitude of a condition's own."""
+        return [one.amplitude for one in self._followed if one.amplitude is not None]
+
+    @property
+    def common_amplitude(self) -> Amplitude:
+        """That of every condition without its own; a given one instead of the default if all of these are held at zero."""
+        needed = any(one.varies for one in self._followed if one.amplitude is None)
+        return self.amplitude if needed or not self._given or self.amplitude != ramp() else self._given[0]
+
+    @property
     def duration(self) -> float:
         """Time in s until the last amplitude ends."""
-        given = [one.amplitude for one in self._followed if one.amplitude is not None]
-        return max(amplitude.duration for amplitude in (self.amplitude, *given))
+        return max(amplitude.duration for amplitude in (self.common_amplitude, *self._given))
 
     @property
     def begins_with_jump(self) -> bool:
         """Whether anything acts at once."""
-        amplitudes = (one.amplitude or self.amplitude for one in self._followed)
+        amplitudes = (one.amplitude or self.common_amplitude for one in self._followed)
         return any(amplitude.history().segments[0].at(0.0) != 0 for amplitude in amplitudes)
 
     def largest_penetration(self, size: float) -> float:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+import scipy.stats
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.experiments.dma.scene import DmaScene, KelvinFit, ShownSignals
@@ -27,6 +28,8 @@ HISTORY_UNITS = {
 }
 FAR_FROM_LEAST = 1.05
 """Ratio to the least of eq. 4.5.2 from which the search is said not to have reached it."""
+BY_CHANCE = 1e-3
+"""Chance with which noise alone leaves the residuals from which a warning says that the units do not describe the data."""
 SHOWN_GENERATIONS = 50
 """Generations whose best objective is kept."""
 
@@ -142,7 +145,7 @@ class DmaReport:
         """Objective, errors and width of the band of one fit."""
         fit, band = finding.fit, finding.band
         errors = fit.parts(self.data.frequencies) / self.data.parts - 1
-        squares = float(((errors / relative_noise(self.data)) ** 2).sum())
+        squares = self._squares(fit)
         width, both = float(np.median(band.relative_width)), "elastic and viscous"
         quantities = {
             f"{method}_objective": Quantity(fit.objective, "1/Pa**2", "eq. 4.5.2 with squared norms"),
@@ -159,9 +162,29 @@ class DmaReport:
             )
         return quantities
 
+    def _squares(self, fit: DmaFit) -> float:
+        """Squared errors of a fit over the variance of the noise, summed."""
+        errors = fit.parts(self.data.frequencies) / self.data.parts - 1
+        return float(((errors / relative_noise(self.data)) ** 2).sum())
+
+    def _misfit(self) -> list[str]:
+        """That the units leave more than the noise, whose sum of squares follows chi-square of as many as all numbers at most."""
+        finding = self.fits.get("least_squares")
+        fit = fit_least_squares(self.data, self._units) if finding is None else finding.fit
+        squares, most = self._squares(fit), float(scipy.stats.chi2.ppf(1 - BY_CHANCE, self.data.parts.size))
+        if squares <= most:
+            return []
+        return [
+            f"with units: {self._units} the model does not describe the data: the least sum of squared errors over the variance "
+            f"of the noise is {squares:.3g}, and noise alone leaves more than {most:.3g} once in {1 / BY_CHANCE:.0f} times; "
+            "neither constants nor curves hold, whatever their errors say: take more units, or a larger noise if it is not "
+            "known so well"
+        ]
+
     def _warnings(self, quantities: dict[str, Quantity]) -> list[str]:
         determinations = [finding.determination for finding in list(self.fits.values())[:1]]
-        warnings = [one.statement() for one in determinations if not one.determined.all()]
+        warnings = self._misfit() if self.fits else []
+        warnings += [one.statement() for one in determinations if not one.determined.all()]
         estimates = () if self.analysis is None else self.analysis.estimates
         coloured = [f"{estimate.frequency:g}" for estimate in estimates if not estimate.has_white_residuals]
         if coloured:

@@ -247,3 +247,44 @@ def test_a_singular_corner_of_a_linear_body_is_no_large_strain():
         dimension="plane_strain", geometry=body, material=material, conditions=held, asked=asked("energy"), steps=1
     )
     assert not result.warnings
+
+
+RELAXING = RUBBER | {"relaxation": {"fractions": [0.8], "times": [0.2]}}
+BRIEFLY = {"pieces": [{"kind": "jump", "to": 1.0, "duration": 0.1}]}
+PULL = {"kind": "displacement", "face": "top", "z": (STRETCH - 1) * SIDE}
+
+
+@pytest.mark.parametrize("rest", [{}, {"amplitude": BRIEFLY}], ids=["by default", "written"])
+def test_a_problem_ends_with_the_last_amplitude_that_anything_follows(rest):
+    """What holds faces at zero follows the default amplitude of 1 s, after which the rod would bear 0.205 of its force."""
+    left = 1 - 0.8 * (1 - np.exp(-0.1 / 0.2))  # the stretch is held from the start
+    fields = {"dimension": "axisymmetric", "geometry": ROD, "material": RELAXING}
+    held = [{"kind": "displacement", "face": "bottom", "z": 0.0}, PULL | {"amplitude": BRIEFLY}]
+    reached = number(**fields, conditions=held, asked=asked("force", face="top", component="z"), **rest)
+    assert reached == pytest.approx(left * NOMINAL * pi * SIDE**2, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("condition", "duration"),
+    [
+        ({"kind": "clamped", "face": "bottom"}, 0.1),
+        ({"kind": "displacement", "face": "bottom", "x": 0.0, "slopes": {"x": {"y": 0.0}}}, 0.1),
+        ({"kind": "displacement", "face": "bottom", "z": 0.0, "slopes": {"z": {"x": 0.1}}}, 1.0),
+        ({"kind": "rotation", "face": "bottom", "angle": 0.1}, 1.0),
+        ({"kind": "pressure", "face": "bottom", "pressure": 1.0}, 1.0),
+        ({"kind": "body_force", "z": -1.0}, 1.0),
+    ],
+    ids=lambda one: one["kind"] if isinstance(one, dict) else "",
+)
+def test_the_default_amplitude_lasts_for_what_it_moves_or_loads(condition, duration):
+    pulled = [{"kind": "clamped", "face": "top"}, {"kind": "traction", "face": "left", "x": -10.0, "amplitude": BRIEFLY}]
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION}
+    problem = BoundaryValueProblem.model_validate(fields | {"conditions": [*pulled, condition]})
+    assert problem.duration == duration
+
+
+def test_an_amplitude_of_the_problem_that_is_written_lasts_as_written():
+    longer = {"pieces": [{"kind": "ramp", "to": 1.0, "duration": 3.0}]}
+    fields = {"dimension": "3d", "geometry": BRICK, "material": RUBBER, "asked": EXTENSION, "amplitude": longer}
+    held = {"kind": "clamped", "face": "bottom"}
+    assert BoundaryValueProblem.model_validate(fields | {"conditions": [held, PULL | {"amplitude": BRIEFLY}]}).duration == 3.0

@@ -5,7 +5,8 @@ from __future__ import annotations
 from math import pi
 
 import pytest
-from small_problems import ROD, SIDE, SQUARE, asked, number, result_of
+from scipy.integrate import quad
+from small_problems import C01, C10, NOMINAL, PLANES, ROD, SIDE, SQUARE, STRETCH, asked, number, result_of
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 
@@ -113,3 +114,42 @@ def test_a_face_among_prescribed_ones_misses_the_share_of_its_edges(cells):
     )
     assert result["stress"].value == pytest.approx(modulus * shear, rel=1e-6)
     assert result["force"].value / (modulus * shear * SIDE) == pytest.approx(1 - 1 / (6 * cells), rel=1e-6)
+    assert [f"force: {1 / (6 * cells - 1):.1%} of the force on top is at edges" in one for one in result.warnings] == [True]
+
+
+def widened(radial, by=1.5):
+    """Force along z on the bore of half a hollow ball of rubber that is widened, over the exact one, and the warnings."""
+    inner, thickness = SIDE, SIDE / 8
+    slopes = {axis: {axis: by - 1} for axis in "rz"}
+    result = result_of(
+        dimension="axisymmetric",
+        geometry={"kind": "ball", "inner_radius": inner, "radial": [{"length": thickness, "cells": radial}], "around": 8},
+        conditions=[{"kind": "displacement", "face": "inner", "r": 0.0, "z": 0.0, "slopes": slopes}],
+        asked=asked("force", face="inner", component="z"),
+    )
+    outside = (1 + (by**3 - 1) * (inner / (inner + thickness)) ** 3) ** (1 / 3)
+
+    def difference(stretch):
+        hoop_over_radial = 2 * C10 * (stretch**2 - stretch**-4) + 2 * C01 * (stretch**4 - stretch**-2)
+        return 2 * hoop_over_radial / (stretch * (stretch**3 - 1))
+
+    pressure = quad(difference, outside, by)[0]
+    return float(result["number"].value) / (pressure * pi * (by * inner) ** 2), result.warnings
+
+
+def test_the_force_on_a_face_beside_a_plane_of_symmetry_is_doubted_by_what_it_misses():
+    """The hoop stress pulls at the equator of a ball, whose edge the widened bore has in common with it."""
+    missed = {}
+    for radial in (2, 4):
+        ratio, warnings = widened(radial)
+        missed[radial] = 1 - ratio
+        doubted = [float(one.split("%")[0].split()[-1]) for one in warnings if "at edges" in one]
+        assert doubted == [pytest.approx(100 * missed[radial], rel=0.1)]
+    assert missed[2] / missed[4] == pytest.approx(2, rel=0.05)
+
+
+def test_a_force_along_a_component_that_one_face_alone_prescribes_is_not_doubted():
+    conditions = [*PLANES, {"kind": "displacement", "face": "top", "z": (STRETCH - 1) * SIDE}]
+    result = result_of(conditions=conditions, asked=asked("force", face="top", component="z"))
+    assert result["number"].value == pytest.approx(NOMINAL * SIDE**2, rel=1e-7)
+    assert not result.warnings

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from contextlib import nullcontext
+
 import pytest
 from pydantic import ValidationError
 from small_problems import BRICK, CELLS, EXTENSION, PLANES, ROD, RUBBER, SIDE, SQUARE, TOP, asked
@@ -162,7 +164,7 @@ def test_a_rigid_body_stays_on_the_axis_of_a_body_of_revolution(moved, words):
         ),
         (
             {"regions": [{"within": {"x": [0.0, 0.7 * SIDE]}, "material": RUBBER}]},
-            "regions.0.within: the part within x from 0 m to 7 mm ends within cells",
+            "regions.0.within: the part within x from 0 m to 7 mm ends within cells; let cells end there",
         ),
         ({"regions": [{"within": {"r": [0.0, SIDE]}, "material": RUBBER}]}, "within: there is no coordinate r; allowed: x, y, z"),
         ({"geometry": ROD, "conditions": [TURNED | {"face": "outer"}]}, "conditions.0.sliding: the face outer is not flat"),
@@ -195,6 +197,21 @@ def test_a_contradiction_is_refused_when_the_case_is_read(fields, words):
         fields["asked"] = fields["asked"] if "torque" in str(fields["asked"]) else asked("volume")
     with pytest.raises(ValidationError, match=words):
         BoundaryValueProblem.model_validate(fields)
+
+
+@pytest.mark.parametrize(("inner_radius", "possible"), [(0.0, False), (SIDE, True)], ids=["solid", "tube"])
+def test_a_core_in_a_section_without_a_hole_is_refused_with_what_holds_it(inner_radius, possible):
+    """In plane strain cells end on circles around a hole only; there is such a core in a disc whose ends are held."""
+    core = {"within": {"r": [inner_radius, inner_radius + SIDE]}, "material": RUBBER}
+    common = {"material": RUBBER, "regions": [core], "asked": asked("volume")}
+    common["conditions"] = [{"kind": "pressure", "face": "outer", "pressure": 1.0}]
+    section = {"kind": "cylinder", "inner_radius": inner_radius, "radial": CELLS * 2}
+    refused = nullcontext() if possible else pytest.raises(ValidationError, match="end on no circle: take dimension")
+    with refused:
+        BoundaryValueProblem.model_validate({"dimension": "plane_strain", "geometry": section, **common})
+    common["conditions"] += [{"kind": "displacement", "face": face, "z": 0.0} for face in ("bottom", "top")]
+    for dimension in ("axisymmetric", "3d"):
+        BoundaryValueProblem.model_validate({"dimension": dimension, "geometry": section | {"axial": CELLS}, **common})
 
 
 def point(*at, **prescribed):

@@ -181,3 +181,13 @@ def test_signals_of_a_specimen_that_still_creeps_carry_a_warning():
 def test_bad_signals_are_refused(data, words):
     with pytest.raises(CaseError, match=words):
         DmaIdentification(data=data)
+
+
+@pytest.mark.parametrize("methods", [("least_squares",), ("genetic",)])
+@pytest.mark.parametrize(("units", "noise", "doubted"), [(1, 0.02, True), (2, 0.02, False), (2, 1e-8, True), (8, 1e-8, False)])
+def test_units_that_leave_more_than_the_noise_are_doubted(units, noise, doubted, methods):
+    """The logarithms of the eight times of the model scatter by 0.003 and 0.008 around two: two units at the means are off by
+    about half the squares of that, less what their constants make up for."""
+    data = SyntheticDma(times="retardation_times", noise=noise)
+    reported = DmaIdentification(data=data, units=units, methods=methods, replicates=50, **QUICK).run()
+    assert any("not describe the data" in warning for warning in reported.warnings) == doubted
