@@ -81,7 +81,8 @@ class Body:
     ----------
     linear : (E,) whether the material is of small strains
     compliance : (E,) of the volume in 1/Pa, zero where the material is incompressible
-    shear_moduli : (E,) in Pa
+    shear_moduli : (E,) of the energies in Pa
+    moduli_at_once : (E,) shear moduli before anything has relaxed, in Pa
 
     Raises
     ------
@@ -114,8 +115,9 @@ class Body:
         self.forms = tuple(compiled_form(material) for material in materials)
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
         self.shear_moduli = np.array([m.shear_modulus for m in materials])[self.regions]
-        at_once = np.array([_instantaneous_modulus(m) for m in materials])[self.regions]
-        self.volume_stiffness = volume_stiffness * self.shear_moduli / (1 + volume_stiffness * at_once * self.compliance)
+        self.moduli_at_once = np.array([_instantaneous_modulus(m) for m in materials])[self.regions]
+        most = volume_stiffness * self.moduli_at_once
+        self.volume_stiffness = volume_stiffness * self.shear_moduli / (1 + most * self.compliance)
 
     def with_relaxation(self, relaxation: RelaxationStep | None) -> Body:
         """The same body in a time step of materials that relax."""
@@ -213,14 +215,6 @@ class Body:
         for part in self._interpreted:
             part.add_tangent(self._at(part, unknowns, state), pattern, data)
         return data
-
-    def rounding_forces(self) -> Array:
-        """Nodal forces (n,) in N that a stress as large as the shear modulus could make without cancellation."""
-        moduli = np.array([_instantaneous_modulus(material) for material in self.materials])[self.regions]
-        points = self.points
-        size = np.abs(points.gradients).max(axis=-1) + points.hoop
-        forces = np.einsum("e,eq,eqa->ea", moduli, points.weights, size)
-        return np.bincount(self.space.elements.ravel(), forces.ravel())
 
     @property
     def _kernels(self) -> ModuleType:

@@ -45,7 +45,7 @@ class Scales:
     def of(cls, body: Body) -> Scales:
         """Those of a body."""
         volume = body.points.weights.sum() / len(body.space.pressure_corners)
-        return cls(volume, ROUND_OFF * np.repeat(body.rounding_forces(), body.space.dim))
+        return cls(volume, ROUND_OFF * np.repeat(rounding_forces(body), body.space.dim))
 
     def rounding_at(self, F: Array) -> Array:
         """Round-off (n,) of the internal nodal forces in N at a deformation gradient (3, 3, ...): what cancels there, a pressure
@@ -144,3 +144,11 @@ def point_displacements(
     if control is None:
         return moved
     return [displacement - rigid_displacement * e[:, None] for displacement, e in zip(moved, control.directions, strict=True)]
+
+
+def rounding_forces(body: Body) -> Array:
+    """Nodal forces (n,) in N that a stress as large as the shear modulus could make without cancellation."""
+    points = body.points
+    size = np.abs(points.gradients).max(axis=-1) + points.hoop
+    forces = np.einsum("e,eq,eqa->ea", body.moduli_at_once, points.weights, size)
+    return np.bincount(body.space.elements.ravel(), forces.ravel())

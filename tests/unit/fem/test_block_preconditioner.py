@@ -8,6 +8,7 @@ from solids import body_of, box, facets_where, held, on_plane
 
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.equilibrium.balance import rounding_forces
 from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.solvers.block_preconditioner import FINEST_STEP, MOST_WITH_OLD, BlockPreconditioned
@@ -50,7 +51,7 @@ def system(cells, *, bulk_modulus=None, contact=True, hold=True, giving_way=0.0)
     floor = np.concatenate([held(mesh, axis, on_plane(2, 0.0)) for axis in range(3)]) if hold else np.zeros(0, int)
     constraints = Constraints(floor, body.pattern)
     matrix = body.pattern.matrix(constraints.apply(data))
-    forces = np.repeat(body.rounding_forces(), 3) * generator.normal(size=space.displacement_size)
+    forces = np.repeat(rounding_forces(body), 3) * generator.normal(size=space.displacement_size)
     volumes = 0.01 * body.points.weights.sum() / space.corner_count * generator.normal(size=space.corner_count)
     return body, matrix, constraints.free(np.concatenate([forces, volumes]))
 
