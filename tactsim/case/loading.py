@@ -14,7 +14,9 @@ from pydantic import ValidationError
 
 from tactsim.case.explaining import problems_of
 from tactsim.case.model import SCHEMA, Case, any_experiment, case_class, experiment_class
+from tactsim.case.of_result import case_of_result, is_result
 from tactsim.case.overrides import apply_override, set_value
+from tactsim.case.writing import case_document
 from tactsim.case.yaml_reading import Document, Problem, YamlProblems, read_yaml
 from tactsim.case.yaml_reading import Path as KeyPath
 from tactsim.errors import CaseError, InputError, StorageError, UnknownName, shown, suggestion
@@ -43,7 +45,7 @@ Overrides = Sequence[str] | Mapping[str, Any]
 
 
 def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> Case:
-    """The validated case in a file, the shipped case of a name such as ``annulus_icf``, or the case that a mapping describes.
+    """The validated case in a file, of a result, of a shipped name such as ``annulus_icf``, or that a mapping describes.
 
     >>> import tactsim as ts
     >>> case = ts.load_case("annulus_icf", {"experiment.recess": "0.4 mm"})
@@ -52,7 +54,8 @@ def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -
 
     Parameters
     ----------
-    path : of the file, which comes before a shipped case; or what such a file holds, ``{"schema": ..., "experiment": ...}``
+    path : of the file, which comes before a shipped case, or of the folder of a result, whose case it is with its overrides; or
+        what such a file holds, ``{"schema": ..., "experiment": ...}``
     overrides : ``{"experiment.recess": "0.4 mm"}``, or text such as ``experiment.recess=0.4 mm``; validated like the file
 
     Raises
@@ -68,7 +71,7 @@ def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -
 
 
 def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> tuple[Document, Place]:
-    """What a case file, or a mapping, says after the overrides, and how messages name its places; nothing is validated yet.
+    """What a case says after the overrides, and how messages name its places; nothing is validated yet.
 
     Raises
     ------
@@ -83,7 +86,7 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
         path, document = "case", Document(plain(path))
     else:
         path = case_path(named_path(path, "a case"))
-        document = _read_file(path)
+        document = Document(case_document(case_of_result(path))) if is_result(path) else _read_file(path)
     overridden: dict[KeyPath, str] = {}
     overrides = [overrides] if isinstance(overrides, str) else overrides
     if not isinstance(overrides, Mapping) and not (

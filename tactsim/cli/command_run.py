@@ -55,7 +55,13 @@ examples:
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     """Declares the options."""
-    parser.add_argument("cases", metavar="CASE", type=Path, nargs="+", help="case file (YAML), or the name of a shipped case")
+    parser.add_argument(
+        "cases",
+        metavar="CASE",
+        type=Path,
+        nargs="+",
+        help="case file (YAML), name of a shipped case, or folder of a result, whose case is run again",
+    )
     parser.add_argument(
         "--out",
         metavar="DIR",
