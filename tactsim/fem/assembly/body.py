@@ -175,6 +175,8 @@ class Body:
         It is J - 1 for exactly incompressible tissue; compressible tissue may change its volume as its pressure asks.
         """
         change = np.where(self.linear[:, None], np.trace(state.F) - 3, state.J - 1)
+        for part in self._interpreted:
+            change[part.elements] = part.material.volume_change(state.F[:, :, part.elements])
         return change - self.compliance[:, None] * self.pressure(unknowns)
 
     def compiled_elastic_stress(self, state: Kinematics, tension: Array) -> Array:
