@@ -6,6 +6,7 @@ import copy
 import ctypes
 import functools
 import os
+from contextlib import suppress
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -35,6 +36,12 @@ SCHUR = 35
 NO_MEMORY = (-2, -9)
 """Pardiso's error codes when memory runs out (oneMKL Developer Reference, pardiso, table of error indicators)."""
 
+LOOPS_THREADS = "libgomp.so.1"
+"""GNU's OpenMP, which the element loops use where the system has it.
+
+MKL takes the same threads if it finds them loaded at its first call, and Intel's otherwise, and with these it orders the unknowns
+differently: the force of a leaning annulus differed by 5e-4, within the tolerance of its contact, by whether a loop had run
+before the first factor, which depended on what the process had computed before. Therefore they are loaded first."""
 LIBRARY_VARIABLE = "PYPARDISO_MKL_RT"
 """Environment variable in which pypardiso takes the path of MKL's library."""
 
@@ -105,6 +112,8 @@ def _pardiso_binding(kind: int) -> Any:
         If pypardiso is there, but not the library that it binds.
     """
     _tell_where_mkl_is()
+    with suppress(OSError):
+        ctypes.CDLL(LOOPS_THREADS)
     os.environ.setdefault("MKL_CBWR", "AUTO,STRICT")  # else a sum depends on where its numbers lie in memory, anew in each run
     try:
         import pypardiso  # makes a solver of its own, so that it raises too
