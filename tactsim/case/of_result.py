@@ -4,22 +4,18 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Any
 
 from pydantic import ValidationError
 
 from tactsim.case.model import Case, case_class, experiment_class
 from tactsim.errors import CaseError, StorageError, TactsimError
-from tactsim.outside.files import opened
-from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
-
-KEPT_IN = "provenance.json"
+from tactsim.results.provenance import PROVENANCE_FILE, read_provenance
 
 
 def is_result(path: Path) -> bool:
     """Whether a path is a folder that keeps a case."""
-    return os.path.isfile(path / KEPT_IN)
+    return os.path.isfile(path / PROVENANCE_FILE)
 
 
 def case_of_result(folder: Path) -> Case:
@@ -32,10 +28,9 @@ def case_of_result(folder: Path) -> Case:
     StorageError
         If the file is damaged.
     """
-    place = folder / KEPT_IN
-    kept: Any = read_json(opened(place, "result").text(), str(place))
+    place = folder / PROVENANCE_FILE
     try:
-        resolved = kept["case"]
+        resolved = read_provenance(place)["case"]
         kind = resolved["experiment"]["kind"]
     except (TypeError, LookupError):
         raise StorageError(f"{one_line(place)} is damaged: it holds no case") from None

@@ -5,12 +5,17 @@ from __future__ import annotations
 import platform
 from collections.abc import Mapping, Sequence
 from functools import cache
-from pathlib import PurePosixPath, PureWindowsPath
+from pathlib import Path, PurePosixPath, PureWindowsPath
 from typing import Any
 
 from tactsim.code_identity import code_identity, installed_versions
+from tactsim.errors import StorageError
+from tactsim.outside.files import opened
+from tactsim.outside.json_text import read_json
+from tactsim.outside.text import one_line
 from tactsim.version import __version__
 
+PROVENANCE_FILE = "provenance.json"
 PACKAGES = ("numpy", "scipy", "scikit-fem", "meshio", "numba", "pypardiso", "pydantic", "ruamel.yaml", "pint")
 
 
@@ -36,6 +41,20 @@ def provenance(
         "platform": {"system": platform.system(), "machine": platform.machine()},
         "case": _without_folders(dict(case)),
     }
+
+
+def read_provenance(path: Path) -> dict[str, Any]:
+    """The content of such a file.
+
+    Raises
+    ------
+    StorageError
+        If it is missing or damaged.
+    """
+    content = read_json(opened(path, "result").text(), str(path))
+    if not isinstance(content, dict):
+        raise StorageError(f"{one_line(path)} is damaged: it is not a mapping")
+    return content
 
 
 @cache

@@ -9,11 +9,11 @@ from typing import Any
 
 from tactsim.errors import StorageError
 from tactsim.outside.files import opened, opened_folder
-from tactsim.outside.json_text import read_json
 from tactsim.outside.text import one_line
 from tactsim.results.document import parse_document, result_of
 from tactsim.results.fields import INDEX, field_files, read_fields
 from tactsim.results.folder import RESULT_FILE
+from tactsim.results.provenance import PROVENANCE_FILE, read_provenance
 from tactsim.results.result import Result
 from tactsim.storage.own_files import read_manifest
 
@@ -55,11 +55,11 @@ def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:
     if not (folder / RESULT_FILE).exists():
         raise StorageError(f"{one_line(directory)} holds no {RESULT_FILE}, so it is not a result of tactsim")
     document = parse_document(opened(folder / RESULT_FILE, "result").text(), str(folder / RESULT_FILE))
-    provenance = _provenance(folder / "provenance.json")
+    provenance = read_provenance(folder / PROVENANCE_FILE)
     result = result_of(document)
     frames = read_fields(folder) if fields else ()
     manifest = read_manifest(folder)
-    read = (RESULT_FILE, "provenance.json", *(field_files(folder) if fields else ()))
+    read = (RESULT_FILE, PROVENANCE_FILE, *(field_files(folder) if fields else ()))
     edited = () if manifest is None else tuple(manifest.changed(folder, *read))
     gone = fields and manifest is not None and INDEX in manifest.files and not (folder / INDEX).exists()
     return StoredResult(replace(result, frames=frames), document.case_id, provenance, folder, edited, gone)
@@ -77,10 +77,3 @@ def read_basis(directory: str | Path) -> StoredResult:
     for change in stored.changes:
         warnings.warn(f"{one_line(directory)}: {change}", stacklevel=2)
     return stored
-
-
-def _provenance(path: Path) -> dict[str, Any]:
-    content = read_json(opened(path, "result").text(), str(path))
-    if not isinstance(content, dict):
-        raise StorageError(f"{one_line(path)} is damaged: it is not a mapping")
-    return content

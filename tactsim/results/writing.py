@@ -14,6 +14,7 @@ from tactsim.errors import StorageError
 from tactsim.results.document import document_text, plain_json
 from tactsim.results.fields import write_fields
 from tactsim.results.folder import RESULT_FILE, OutputFolder, claimed
+from tactsim.results.provenance import PROVENANCE_FILE
 from tactsim.results.result import Result
 from tactsim.storage.files import naming, write_bytes
 
@@ -56,7 +57,7 @@ def fill(
         write_fields(result.frames, target)
         write_bytes(target / "history.csv", history_table(result).encode())
         origin = json.dumps(plain_json(dict(provenance), (), []), indent=1, allow_nan=False)
-        write_bytes(target / "provenance.json", f"{origin}\n".encode())
+        write_bytes(target / PROVENANCE_FILE, f"{origin}\n".encode())
         if figures:
             (target / "figures").mkdir()
         for name, content in figures.items():

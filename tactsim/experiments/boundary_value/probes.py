@@ -58,7 +58,8 @@ class Probes:
 
     def doubts(self, state: TimedState) -> list[str]:
         """Forces on faces of which more than is allowed stands at edges that other faces hold, too."""
-        forces, parts = self._forces.at(state), self._forces.of_edges(state)
+        parts = self._forces.of_edges(state)
+        forces = self._forces.at(state) if parts else {}
         doubts = []
         for name, one in self._problem.asked.items():
             if not isinstance(one, AskedForce) or one.face not in parts:

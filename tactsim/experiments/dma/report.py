@@ -8,6 +8,7 @@ import numpy as np
 import scipy.stats
 
 from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
+from tactsim.array import Array
 from tactsim.experiments.dma.scene import DmaScene, KelvinFit, ShownSignals
 from tactsim.experiments.dma.source import SignalsAnalysis
 from tactsim.identification.dma_bands import ComplianceBand
@@ -144,8 +145,7 @@ class DmaReport:
     def _errors(self, method: str, finding: DmaFinding) -> dict[str, Quantity]:
         """Objective, errors and width of the band of one fit."""
         fit, band = finding.fit, finding.band
-        errors = fit.parts(self.data.frequencies) / self.data.parts - 1
-        squares = self._squares(fit)
+        errors, squares = self._relative_errors(fit), self._squares(fit)
         width, both = float(np.median(band.relative_width)), "elastic and viscous"
         quantities = {
             f"{method}_objective": Quantity(fit.objective, "1/Pa**2", "eq. 4.5.2 with squared norms"),
@@ -162,10 +162,13 @@ class DmaReport:
             )
         return quantities
 
+    def _relative_errors(self, fit: DmaFit) -> Array:
+        """Of both parts of the modulus, over the data."""
+        return fit.parts(self.data.frequencies) / self.data.parts - 1
+
     def _squares(self, fit: DmaFit) -> float:
         """Squared errors of a fit over the variance of the noise, summed."""
-        errors = fit.parts(self.data.frequencies) / self.data.parts - 1
-        return float(((errors / relative_noise(self.data)) ** 2).sum())
+        return float(((self._relative_errors(fit) / relative_noise(self.data)) ** 2).sum())
 
     def _misfit(self) -> list[str]:
         """That the units leave more than the noise, whose sum of squares follows chi-square of as many as all numbers at most."""
