@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -18,6 +19,7 @@ from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import LEVEL, Estimate
 from tactsim.localization.checked_estimate import estimate_of
 from tactsim.localization.lump_response import LumpResponse
+from tactsim.progress import count_bar
 
 NOISES = (1.0, 2.0, 4.0)
 """Noise of a reading over the stated one."""
@@ -70,9 +72,15 @@ def outcome(estimate: Estimate, truth: Truth) -> JudgedEstimate:
 
 
 def outcomes(
-    estimator: Estimator, samples: JudgedSamples, response: LumpResponse | None, *, multiple: float = 1.0, seed: int = 1
+    estimator: Estimator,
+    samples: JudgedSamples,
+    response: LumpResponse | None,
+    *,
+    multiple: float = 1.0,
+    seed: int = 1,
+    done: Callable[[], None] = lambda: None,
 ) -> list[JudgedEstimate]:
-    """One outcome for each sample.
+    """One outcome for each sample; ``done`` is called after each.
 
     Raises
     ------
@@ -83,7 +91,11 @@ def outcomes(
     if estimator.needs_response and model is None:
         raise InputError(f"the estimator {estimator.kind} needs the response of the tissue")
     readings = samples.readings(model, multiple=multiple, seed=seed)
-    return [outcome(estimate_of(estimator, each), truth) for each, truth in zip(readings, samples.truths, strict=True)]
+    judged = []
+    for each, truth in zip(readings, samples.truths, strict=True):
+        judged.append(outcome(estimate_of(estimator, each), truth))
+        done()
+    return judged
 
 
 def measures(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, Any]:
@@ -207,8 +219,11 @@ def ranking(
         If an estimator needs what the samples lack.
     """
     ranked = []
-    for name, estimator in estimators.items():
-        runs = {multiple: outcomes(estimator, samples, response, multiple=multiple, seed=seed) for multiple in NOISES}
-        noises = {multiple: measures(run, samples.block_size) for multiple, run in runs.items()}
-        ranked.append(Ranked(name, tuple(runs[1.0]), noises, binned(runs[1.0], samples.block_size)))
+    with count_bar("estimates", len(estimators) * len(NOISES) * len(samples.truths)) as show:
+        numbers = itertools.count(1)
+        judge = partial(outcomes, samples=samples, response=response, seed=seed, done=lambda: show(next(numbers)))
+        for name, estimator in estimators.items():
+            runs = {multiple: judge(estimator, multiple=multiple) for multiple in NOISES}
+            noises = {multiple: measures(run, samples.block_size) for multiple, run in runs.items()}
+            ranked.append(Ranked(name, tuple(runs[1.0]), noises, binned(runs[1.0], samples.block_size)))
     return sorted(ranked, key=lambda one: float(one.measures["score"]["value"]))

@@ -141,7 +141,10 @@ class SwitchProbeReport:
                 warnings.append(f"{where}: {closed} of {COUNT} switches closed, so there is no mean rate")
             if touch.true.contact_height.max() < (1 - SUNK) * setup.depth:
                 height = format_quantity(float(touch.true.contact_height.max()), "m")
-                warnings.append(f"{where}: the tissue sinks in beside the probe and touches its sides up to {height} only")
+                warnings.append(
+                    f"{where}: the tissue sinks in beside the probe and touches its sides up to {height} only (sides: followed "
+                    "takes it up to the undeformed surface, as the thesis does)"
+                )
             if touch.quality is not None:
                 warnings += [f"{where}: {warning}" for warning in touch.quality.warnings(touch.states)]
             if touch.saturated:

@@ -33,6 +33,10 @@ class AutomaticSource(BlockSource):
     tetrahedra: TetrahedraSource = TetrahedraSource()
     """The tetrahedra otherwise."""
 
+    def least_gap(self, size: Size) -> float:
+        """Least distance in m between inclusions, and from faces, that either mesh needs in a block of this size in m."""
+        return min(source.least_gap(size) for source in (self.graded, self.tetrahedra))
+
     def chosen(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> GradedSource | TetrahedraSource:
         """What suits these inclusions in a block of this size in m, and jaws with these ``flats`` (2, 2) in m."""
         return self.graded if self.graded.misfit(size, inclusions, flats) is None else self.tetrahedra

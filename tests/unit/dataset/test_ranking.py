@@ -15,6 +15,7 @@ from drawn import colliding_words
 from made_grasps import LAYOUT, SIZE, made_samples, made_store, plain_result, response
 from scipy.stats import norm
 
+from tactsim import progress
 from tactsim.cli import main
 from tactsim.dataset.figures.estimator_ranking import AXES, errors_figure, ranking_figures, roc, roc_figure
 from tactsim.dataset.ranking.measures import JudgedEstimate, binned, interval, measures, outcome, penalty, ranking, share
@@ -133,6 +134,15 @@ def test_the_better_estimator_comes_first() -> None:
     assert json.loads(json.dumps(record(ranked, samples, {})))["estimators"][0]["samples"][1]["found"]
     with pytest.raises(InputError, match="needs the response"):
         ranking({"model": good}, samples, None)
+
+
+def test_whoever_watches_sees_how_many_estimates_are_done(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(progress, "is_watched", lambda: True)
+    ranking({"thesis": ThesisEstimator()}, made_samples(4, response()), None)
+    assert "estimates: 100%" in (shown := capsys.readouterr().err)
+    assert "12/12" in shown  # at three noises
 
 
 def test_the_command_writes_report_and_figures(

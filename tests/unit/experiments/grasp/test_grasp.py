@@ -294,6 +294,12 @@ def test_what_cannot_be_grasped_is_refused(changes, words):
         grasp(**changes)
 
 
+def test_a_body_that_protrudes_is_told_the_distance_that_graded_cells_need():
+    ball = BALL | {"radius": 11e-3}
+    with pytest.raises(ValidationError, match="at least 250 µm inside the block"):  # tetrahedra need 780 µm
+        grasp(mesh={"kind": "automatic"}, inclusions=[{"shape": ball, "material": "lump"}])
+
+
 def test_jaws_grow_with_the_block_so_that_their_backs_are_out_of_reach():
     narrow = {"width": 200e-3, "depth": 200e-3, "fillet": 8e-3}  # more than half of 10 mm
     large = {"size": (400e-3, 400e-3, 300e-3), "tissue": grasp().block.tissue}
