@@ -24,7 +24,9 @@ ADDRESS = re.compile(r"([a-z]+://)?([^\s/:]+|\[[0-9a-fA-F:]+\]):\d{1,5}")
 CONNECTING = 30.0
 """Seconds to wait for the scheduler."""
 WORTH_A_PROCESS = 8.0
-"""Time in s that a sweep must take for another process to pay, which takes 3 to 5 s to begin, and from the first one's core."""
+"""Time in s that a short sweep must take for another process to pay, which takes 3 to 5 s to begin, and from the first's core."""
+SHORT = 8
+"""Samples for each process below which a sweep is short."""
 TASKS_PER_THREAD = 2
 """Tasks under way for each thread of the cluster, so that none waits for the network."""
 
@@ -79,7 +81,7 @@ class LocalWorkers(Executor):
 
     @classmethod
     def of(cls, sweep: Sweep, count: int | None) -> Self:
-        """Those of a sweep; by default one per core, not more than samples, and the first alone if the sweep is short.
+        """Those of a sweep; by default one per core, not more than samples, and at first one alone if the sweep is short.
 
         Raises
         ------
@@ -90,7 +92,9 @@ class LocalWorkers(Executor):
             if not isinstance(count, int) or count < 1:
                 raise InputError(f"workers is {shown(count)}; allowed: whole numbers from 1 on, or None for one per core")
             return cls(sweep.text, count, folder=sweep.folder)
-        return cls(sweep.text, min(usable_cores(), sweep.samples), folder=sweep.folder, patience=WORTH_A_PROCESS)
+        count = min(usable_cores(), sweep.samples)
+        patience = WORTH_A_PROCESS if sweep.samples < SHORT * count else 0.0
+        return cls(sweep.text, count, folder=sweep.folder, patience=patience)
 
     @property
     def slots(self) -> int:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from tactsim.case.model import Case, experiment_kinds
+from tactsim.case.model import Case
 from tactsim.dataset.sampling.drawing import drawn_specimen, fault_of
 from tactsim.dataset.sampling.settings import Condition
 from tactsim.dataset.sampling.suitable import check_suitable
@@ -17,9 +17,10 @@ from tactsim.dataset.store.arrays import index_variables
 from tactsim.errors import CaseError, suggestion
 from tactsim.experiments.recording import recorder_for
 from tactsim.experiments.recording import variables as variables_of
-from tactsim.interfaces import Recorder
+from tactsim.interfaces import Experiment, Recorder
 from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable
+from tactsim.registry import kind_names
 from tactsim.units import format_quantity
 
 SPLITTING = 3
@@ -51,7 +52,7 @@ def layout_of(sweep: Sweep) -> Layout:
     CaseError
         If no case is possible, nothing can be stored, or a split asks for a label that there is not.
     """
-    known = experiment_kinds()
+    known = kind_names(Experiment)
     if sweep.kind not in known:
         unknown = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
         raise sweep.error(("experiment", "kind"), unknown)

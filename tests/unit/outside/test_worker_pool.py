@@ -70,3 +70,15 @@ def test_a_sweep_has_no_more_processes_than_samples_and_as_many_as_are_asked_for
     sweep = load_sweep("sweep_closed_form", samples=3)
     assert LocalWorkers.of(sweep, None).slots == 3
     assert LocalWorkers.of(sweep, 5).slots == 5
+
+
+@pytest.mark.parametrize(("samples", "begun"), [(4, 1), (40, 2)], ids=["short", "long"])
+def test_all_processes_of_a_long_sweep_begin_at_once(samples: int, begun: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("tactsim.dataset.running.executors.usable_cores", lambda: 2)
+    monkeypatch.setattr(worker_pool, "Worker", Pretended)
+    monkeypatch.setattr(worker_pool, "own_cores", list)
+    monkeypatch.setattr(Pretended, "begun", 0)
+    with closing(LocalWorkers.of(load_sweep("sweep_closed_form", samples=samples), None)) as workers:
+        workers.submit((0,))
+        workers.submit((1,))
+    assert Pretended.begun == begun
