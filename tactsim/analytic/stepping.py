@@ -55,10 +55,11 @@ def kelvin_step(constants: Array, state: Array, time_step: float, stress: float)
     r"""Strain at the end of a step in which the stress in Pa went linearly from its last value to ``stress``.
 
     .. math::
-        q_i \leftarrow q_i + (\sigma - q_i)(1 - e^{-h_i}) + \Delta\sigma\, \frac{h_i - 1 + e^{-h_i}}{h_i}, \quad
-        \varepsilon = J_0 \sigma + \sum_i J_i q_i + \varphi \int \sigma\, dt, \quad h_i = \Delta t / \tau_i
+        q_i \leftarrow q_i + (\sigma_0 - q_i)(1 - e^{-h_i}) + \Delta\sigma\, \frac{h_i - 1 + e^{-h_i}}{h_i}, \quad
+        \varepsilon_1 = J_0 \sigma_1 + \sum_i J_i q_i + \varphi \int \sigma\, dt, \quad h_i = \Delta t / \tau_i
 
-    A ``time_step`` of zero in s is a jump.
+    with the stress :math:`\sigma_0` at the beginning of the step and :math:`\sigma_1 = \sigma_0 + \Delta\sigma` at its end. A
+    ``time_step`` of zero in s is a jump.
 
     Raises
     ------

@@ -56,7 +56,7 @@ class ViscoelasticAnnulus:
     InvalidQuantity, UnknownName
         If an argument is out of its range, or the formula is not exact on a layer.
 
-    Source: thesis sections 4.6 and 4.7, eqs. 4.6.1 to 4.6.4; Lee & Radok 1960, doi:10.1115/1.3644020; Ting 1966,
+    Source: thesis sections 4.6 and 4.7, eqs. 4.6.1 to 4.6.5; Lee & Radok 1960, doi:10.1115/1.3644020; Ting 1966,
     doi:10.1115/1.3625192.
     """
 

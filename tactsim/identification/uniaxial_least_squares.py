@@ -155,7 +155,7 @@ def ellipticity_rows(names: tuple[str, ...]) -> Array:
 
 
 def _conditions(derivatives: Sequence[Array], states: Array) -> Array:
-    """Every g_k, every d_k, and the tangents of the third set, at states (3, n), flat."""
+    """Every mu_k, every d_k, and the tangents of the third set, at states (3, n), flat."""
     shear, opposite, equal = shear_conditions((*derivatives,), states)  # type: ignore[arg-type]
     tangents = [(1 + t) * opposite[i] + (1 + 1 / t) * opposite[j] + equal[k] for i, j, k in PAIRS for t in TANGENTS]
     return np.concatenate([shear.ravel(), opposite.ravel(), *tangents])

@@ -25,7 +25,7 @@ Derivatives = tuple[Array, Array, Array, Array, Array]
 
 
 def shear_conditions(derivatives: Derivatives, stretches: Array) -> tuple[Array, Array, Array]:
-    r"""Shear moduli g_k, and the terms d_k and e_k of the conditions of strong ellipticity, in Pa, each of shape (3, ...).
+    r"""Shear moduli mu_k, and the terms d_k and e_k of the conditions of strong ellipticity, in Pa, each of shape (3, ...).
 
     For unit ``n`` normal to ``m``, the energy along ``(I + s m n^T) F`` has the second derivative
 
@@ -38,10 +38,10 @@ def shear_conditions(derivatives: Derivatives, stretches: Array) -> tuple[Array,
 
     .. math::
         Q_{min} = 2 \sum_{x_i x_j < 0} d_k |x_i x_j| + 2 \sum_{x_i x_j > 0} e_k x_i x_j, \quad
-        g_k = W_1 + \lambda_k^2 W_2, \quad H_k = W_{11} + 2 \lambda_k^2 W_{12} + \lambda_k^4 W_{22},
+        \mu_k = W_1 + \lambda_k^2 W_2, \quad H_k = W_{11} + 2 \lambda_k^2 W_{12} + \lambda_k^4 W_{22},
 
-        d_k = (\lambda_i + \lambda_j)^2 g_k + 2 (\lambda_i^2 - \lambda_j^2)^2 H_k, \quad
-        e_k = -(\lambda_i - \lambda_j)^2 g_k - 2 (\lambda_i^2 - \lambda_j^2)^2 H_k
+        d_k = (\lambda_i + \lambda_j)^2 \mu_k + 2 (\lambda_i^2 - \lambda_j^2)^2 H_k, \quad
+        e_k = -(\lambda_i - \lambda_j)^2 \mu_k - 2 (\lambda_i^2 - \lambda_j^2)^2 H_k
 
     All three are linear in W. ``stretches`` has shape (3, ...) and product 1.
     """
@@ -72,7 +72,7 @@ def convex_in_invariants(material: Hyperelastic, I1: Array, I2: Array) -> Array:
 def invariant_ellipticity_margin(material: Hyperelastic, stretches: Array) -> Array:
     r"""Smallest of the nine conditions of strong ellipticity in Pa; positive where, and only where, the material is elliptic.
 
-    .. math:: g_k > 0, \quad d_k > 0, \quad (\sqrt{d_i} + \sqrt{d_j})^2 + e_k > 0
+    .. math:: \mu_k > 0, \quad d_k > 0, \quad (\sqrt{d_i} + \sqrt{d_j})^2 + e_k > 0
 
     The third set makes Q_min of ``shear_conditions`` positive when x_i and x_j have one sign and x_k the other. Necessary and
     sufficient for an incompressible material; a finite bulk modulus only adds stiffness to directions with m . n != 0.

@@ -3,8 +3,8 @@ r"""History variables of a body of relaxing materials, advanced exactly for a st
 With :math:`S_e` the isochoric second Piola-Kirchhoff stress of the energy and one overstress per relaxation time,
 
 .. math::
-    h_i(t) = \int_0^t g_i e^{-(t - s) / \tau_i}\, \dot S_e(s)\, ds, \qquad
-    h_i^{n+1} = e^{-h} h_i^n + g_i \frac{1 - e^{-h}}{h} (S_e^{n+1} - S_e^n) + g_i \psi(h)\, \Delta t^2\, \ddot S_e, \qquad
+    Q_i(t) = \int_0^t g_i e^{-(t - s) / \tau_i}\, \dot S_e(s)\, ds, \qquad
+    Q_i^{n+1} = e^{-h} Q_i^n + g_i \frac{1 - e^{-h}}{h} (S_e^{n+1} - S_e^n) + g_i \psi(h)\, \Delta t^2\, \ddot S_e, \qquad
     h = \Delta t / \tau_i
 
 The last term is that of the parabola through three states, :math:`\psi = (1 + e^{-h}) / 2h - (1 - e^{-h}) / h^2`; it is zero
@@ -171,7 +171,8 @@ def size_of(body: Body, stress: Array) -> float:
 def step_error(body: Body, variables: HistoryVariables, least: float = 0.0) -> float:
     r"""Estimated error of the stress over its size after the last step, when steps like it go on; zero for the first of a piece.
 
-    The error of the parabola is :math:`s (s - \Delta t)(s + \Delta t_0) \dddot S / 6` in the elastic stress. A short relaxation
+    The error of the parabola is :math:`s (s - \Delta t)(s + \Delta t_0) \dddot S_e / 6` in the elastic stress at the time s
+    after the beginning of the step, :math:`\Delta t_0` being the length of the step before. A short relaxation
     time responds to its slope at the end of a step, a long one to its mean, which fading memory keeps from accumulating. For the
     second step of a piece the whole curvature counts as the error. Differences within the round-off of F = 1 + ... do not count.
     A stress below ``least`` in Pa counts as large as that, and one that is all but gone as a hundredth of its part that does not

@@ -10,8 +10,8 @@ from tactsim.array import Array
 from tactsim.interfaces.readings import RESOLUTION, ROUNDING_NOISE
 
 MESH_SHARE = 0.006
-"""Error of a taxel over the largest force that a mesh leaves: by that much does ``cases/grasp_lump_icf.yaml`` differ from finer
-cells, and equal taxels of a plain block from each other on tetrahedra as sweeps make them."""
+"""Error of a taxel over the largest force that a mesh leaves: that of the shipped cells around an artery in the middle of a
+block, and three times that of ``cases/grasp_lump_icf.yaml`` (docs/theory/mesh.md)."""
 
 
 @dataclass(frozen=True)
