@@ -30,7 +30,7 @@ from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem
 from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso
 from tactsim.fem.solvers.relay import Relay
 from tactsim.fem.solvers.reused_factor import ReusedFactor
-from tactsim.fem.solvers.solver_choice import factored, giving_way
+from tactsim.fem.solvers.solver_choice import analysed, factored, giving_way
 
 CASE = Path(__file__).parents[1] / "cases" / "grasp_lump_icf.yaml"
 CELLS = {"size": 4.0, "inclusion_size": 2.0, "edge_size": 1.6}
@@ -51,7 +51,8 @@ class Counting(IterativeSolver):
     name = "counting"
 
     def __init__(self, body: Body, *, factor: bool = False):
-        self._solver = factored(QuasiDefinitePardiso(giving_way(body))) if factor else Relay(BlockPreconditioned(body))
+        guide = QuasiDefinitePardiso(giving_way(body))
+        self._solver = factored(guide, analysed(guide, body)) if factor else Relay(BlockPreconditioned(body))
         self._begin = 0.0
         self.iterations: list[int] = []
         self.accuracies: list[float] = []

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
@@ -11,7 +10,7 @@ from tactsim.fem.solvers.block_preconditioner import BlockPreconditioned, pressu
 from tactsim.fem.solvers.linear import LinearSolver, SuperLU, has_pardiso
 from tactsim.fem.solvers.pardiso import FactorSize, QuasiDefinitePardiso, SinglePardiso
 from tactsim.fem.solvers.relay import Relay
-from tactsim.fem.solvers.reused_factor import FAILED, ReusedFactor
+from tactsim.fem.solvers.reused_factor import FAILED, WORTH_A_FACTOR, ReusedFactor
 from tactsim.fem.solvers.stiff_contact import section_factors, solid_factors
 
 OPERATIONS_PER_SECOND, ENTRIES_PER_SECOND = 9e10, 2.5e9
@@ -43,6 +42,11 @@ def factor_seconds(size: FactorSize) -> float:
     return FACTORS * size.operations / OPERATIONS_PER_SECOND + SOLUTIONS * size.entries / ENTRIES_PER_SECOND
 
 
+def solutions_per_factor(size: FactorSize) -> int:
+    """How many solutions cost as much as the factor: 34, 38 and 66 at 26 000, 45 000 and 122 000 unknowns."""
+    return round(size.operations / OPERATIONS_PER_SECOND / (size.entries / ENTRIES_PER_SECOND))
+
+
 def iteration_seconds(unknowns: float) -> float:
     """Seconds per system of a body of so many unknowns by the iteration, on one core."""
     return (PREPARATION + STEPS * STEP) * unknowns
@@ -56,8 +60,10 @@ def solver_for(body: Body) -> LinearSolver:
     if not has_pardiso():
         return iterated(body) if size > LARGEST_SUPERLU else SuperLU()
     guide = QuasiDefinitePardiso(giving_way(body))
-    if size < SMALLEST_ITERATED or factor_seconds(guide.analyse(_ones(body))) <= iteration_seconds(size):
+    if size < SMALLEST_ITERATED:
         return factored(guide)
+    if factor_seconds(factor := analysed(guide, body)) <= iteration_seconds(size):
+        return factored(guide, factor)
     guide.close()
     return iterated(body)
 
@@ -69,9 +75,18 @@ def stiff_contact_solver(dim: int) -> LinearSolver:
     return section_factors() if dim == 2 else solid_factors()
 
 
-def factored(guide: QuasiDefinitePardiso) -> Relay:
-    """The factor of what gives way a little, whose pivots need not suffice; after it the matched one."""
-    return Relay(ReusedFactor(guide, largest_left=FAILED), _sturdiest)
+def analysed(guide: QuasiDefinitePardiso, body: Body) -> FactorSize:
+    """Size of the factor that the guide will make of the body's tangents."""
+    return guide.analyse(body.pattern.matrix(np.ones(len(body.pattern.indices))))
+
+
+def factored(guide: QuasiDefinitePardiso, size: FactorSize | None = None) -> Relay:
+    """The factor of what gives way a little, whose pivots need not suffice; after it the matched one.
+
+    A factor of a known size is reused for as long as it pays by that size, any other as a factor of some 20 000 unknowns is.
+    """
+    worth = WORTH_A_FACTOR if size is None else max(WORTH_A_FACTOR, solutions_per_factor(size))
+    return Relay(ReusedFactor(guide, largest_left=FAILED, worth=worth), _sturdiest)
 
 
 def iterated(body: Body) -> Relay:
@@ -82,11 +97,6 @@ def iterated(body: Body) -> Relay:
 def _sturdiest() -> ReusedFactor:
     """A factor whose pivots suffice for any tissue: the matched one, or SuperLU's without Pardiso."""
     return ReusedFactor(SinglePardiso() if has_pardiso() else SuperLU())
-
-
-def _ones(body: Body) -> csr_matrix:
-    """A matrix of the pattern of the body's tangents."""
-    return body.pattern.matrix(np.ones(len(body.pattern.indices)))
 
 
 def giving_way(body: Body) -> Array:

@@ -113,7 +113,8 @@ def solid_factors() -> Relay:
     friction does not couple, guides the iteration for as long as it pays; general factors where that fails.
 
     A factor costs more solutions than in a section: with friction `annulus_tilted_3d` takes two thirds of the time that general
-    factors of all systems would.
+    factors of all systems would. In the order of nested dissection its factors take a tenth less time, and the same share is lost
+    to more solutions, which are slower.
     """
 
     def guided() -> ReusedFactor:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.sparse import csr_matrix
 from solids import body_of, box, facets_where, held, on_plane
 
 from tactsim.errors import ConvergenceError, InputError
@@ -13,9 +14,17 @@ from tactsim.fem.equilibrium.constraints import Constraints
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.solvers.block_preconditioner import FINEST_STEP, MOST_WITH_OLD, BlockPreconditioned
 from tactsim.fem.solvers.linear import LOOSENESS, SuperLU, direct_solver, solved
-from tactsim.fem.solvers.pardiso import QuasiDefinitePardiso
-from tactsim.fem.solvers.reused_factor import ReusedFactor
-from tactsim.fem.solvers.solver_choice import factor_seconds, factored, giving_way, iterated, solver_for
+from tactsim.fem.solvers.pardiso import FactorSize, QuasiDefinitePardiso
+from tactsim.fem.solvers.reused_factor import WORTH_A_FACTOR, ReusedFactor
+from tactsim.fem.solvers.solver_choice import (
+    analysed,
+    factor_seconds,
+    factored,
+    giving_way,
+    iterated,
+    solutions_per_factor,
+    solver_for,
+)
 from tactsim.fem.solvers.two_level import linear_interpolation
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
@@ -252,9 +261,9 @@ def test_the_size_of_the_factor_decides(monkeypatch):
     assert isinstance(solver_for(small).current, ReusedFactor)
     sizes = {}
     for name, body in {"cube": cube, "slender": slender}.items():
-        analysed = QuasiDefinitePardiso(giving_way(body))
-        sizes[name] = analysed.analyse(body.pattern.matrix(np.ones(len(body.pattern.indices))))
-        analysed.close()
+        guide = QuasiDefinitePardiso(giving_way(body))
+        sizes[name] = analysed(guide, body)
+        guide.close()
     assert sizes["slender"].operations < 0.5 * sizes["cube"].operations
     assert factor_seconds(sizes["slender"]) < factor_seconds(sizes["cube"])
     between = (factor_seconds(sizes["slender"]) + factor_seconds(sizes["cube"])) / 2
@@ -283,8 +292,27 @@ def test_without_pardiso_small_bodies_get_a_factor_and_others_the_iteration(monk
 def test_what_was_analysed_is_factored():
     body, matrix, right = system((3, 3, 2), contact=False)
     factor = QuasiDefinitePardiso(giving_way(body))
-    size = factor.analyse(body.pattern.matrix(np.ones(len(body.pattern.indices))))
+    size = analysed(factor, body)
     assert matrix.nnz / 2 < size.entries < matrix.shape[0] ** 2 / 2
     assert size.operations > size.entries
     computed, expected = (solved(factored(one), matrix, right, 1e-10) for one in (factor, QuasiDefinitePardiso(giving_way(body))))
     np.testing.assert_allclose(computed, expected, rtol=0, atol=1e-8 * np.abs(expected).max())
+
+
+@pytest.mark.skipif(direct_solver().name != "pardiso", reason="only Pardiso tells the size of a factor")
+def test_a_factor_that_costs_more_solutions_serves_more_systems():
+    """Block and ball of 121 811 unknowns, `benchmarks/peers.py`: the factor takes 3.4 s, a solution with it 47 ms."""
+    body, matrix, right = system((3, 3, 2), contact=False)
+    large = FactorSize(entries=1.3e8, operations=3.1e11)
+    assert solutions_per_factor(large) == pytest.approx(3.4 / 0.047, rel=0.15)
+    disorder = np.random.default_rng(1).uniform(-0.005, 0.005, matrix.nnz)
+    changed = [csr_matrix((matrix.data * (1 + number * disorder), matrix.indices, matrix.indptr)) for number in range(10)]
+    made = {}
+    for size in (None, FactorSize(entries=9e6, operations=1e9), large):  # unknown, of few operations, of many
+        solver = factored(QuasiDefinitePardiso(giving_way(body)), size)
+        for one in changed:
+            solved(solver, one, right, 1e-4)
+        made[size] = solver.current.factorisations
+        assert solver.current.solutions > WORTH_A_FACTOR
+        solver.close()
+    assert list(made.values()) == [2, 2, 1]
