@@ -22,6 +22,10 @@ from tactsim.experiments.recording import seed_place
 SAME_REFUSALS = 4
 SPECIMENS, SAMPLES, NOISE = 0, 1, 2
 """Streams of random numbers of a sweep."""
+WITHIN = 1
+"""Stream, within SAMPLES, of what all specimens share."""
+SOBOL_BITS = 30
+"""Binary digits of the coordinates of a Sobol point."""
 BLOCK = 1024
 """Sobol points that are made together; a power of two keeps their balance."""
 
@@ -115,6 +119,9 @@ def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, a
         point = redrawn_point(seed, number, attempt, len(places))
     elif settings.design == "grid":
         point = grid_point(sizes_of(places), number)
+    elif settings.design == "sobol" and stream == SAMPLES:
+        within = divmod(number, sweep.per_specimen)
+        point = point_within(seed, *within, dimensions=len(places), beside=len(sweep.specimen_places))
     else:
         specimens = -(-sweep.samples // sweep.per_specimen)
         count = specimens * (1 if stream == SPECIMENS else sweep.per_specimen)
@@ -137,6 +144,22 @@ def design_point(design: DesignName, seed: tuple[int, ...], number: int, *, coun
     return _sobol(seed, number // BLOCK, dimensions)[number % BLOCK]
 
 
+def point_within(seed: tuple[int, ...], specimen: int, within: int, *, dimensions: int, beside: int) -> Array:
+    """Sobol point (dimensions,) in [0, 1) of one sample of a specimen, independent of the ``beside`` coordinates of the specimen.
+
+    Two Sobol sequences begin with the same digits, whatever their scrambling, so that a sequence over the samples would follow
+    that over the specimens. Instead, the specimen has a point in further dimensions of its own sequence, which is shifted, digit
+    by digit, by the points of a short sequence over the samples of any specimen: the first, the second, ... samples of the
+    specimens cover the cube evenly, and so do the samples of each specimen.
+    """
+    if dimensions == 0:
+        return np.zeros(0)
+    of_specimen = _sobol(seed, specimen // BLOCK, beside + dimensions)[specimen % BLOCK, beside:]
+    of_sample = _sobol((*seed, WITHIN), within // BLOCK, dimensions)[within % BLOCK]
+    digits = [np.ldexp(point, SOBOL_BITS).astype(np.int64) for point in (of_specimen, of_sample)]
+    return np.ldexp((digits[0] ^ digits[1]).astype(float), -SOBOL_BITS)
+
+
 def redrawn_point(seed: tuple[int, ...], number: int, attempt: int, dimensions: int) -> Array:
     """Point (dimensions,) of a sample whose case was refused ``attempt`` times before: random, whatever the design."""
     return np.random.default_rng([*seed, number, attempt]).random(dimensions)
@@ -155,7 +178,7 @@ def _latin_hypercube(seed: tuple[int, ...], count: int, dimensions: int) -> Arra
 
 @lru_cache(maxsize=8)
 def _sobol(seed: tuple[int, ...], block: int, dimensions: int) -> Array:
-    engine = scipy.stats.qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
+    engine = scipy.stats.qmc.Sobol(dimensions, bits=SOBOL_BITS, rng=np.random.default_rng(seed))
     if block:
         engine.fast_forward(block * BLOCK)
     with warnings.catch_warnings():

@@ -55,6 +55,25 @@ def test_a_sobol_design_is_the_same_across_its_blocks() -> None:
     assert (cells == 8).all()  # what a net of 2^11 points in two dimensions has in each of 256 squares
 
 
+@pytest.mark.parametrize(("text", "samples"), [(TEXT, 3), (TEXT, 2), ((CASES / "sweep_rates.yaml").read_text(), 3)])
+def test_what_varies_within_a_specimen_does_not_follow_the_specimen(tmp_path: Path, text: str, samples: int) -> None:
+    sweep = sweep_of(tmp_path, text.replace("samples_per_specimen: 3", f"samples_per_specimen: {samples}"))
+    drawn = [drawn_specimen(sweep, specimen) for specimen in range(128)]
+    kept = [specimen for specimen in drawn if not specimen[0].redraws]
+    assert len(kept) > 100
+    for place in sweep.specimen_places:
+        of_specimen = np.argsort(np.argsort([specimen[0].values[place.path] for specimen in kept]))
+        for inner in sweep.sample_places:
+            for within in range(samples):
+                of_sample = np.argsort(np.argsort([specimen[within].values[inner.path] for specimen in kept]))
+                together = np.histogram2d(of_specimen, of_sample, bins=4)[0] / len(kept)
+                assert abs(np.corrcoef(of_specimen, of_sample)[0, 1]) < 0.1
+                assert abs(together - 1 / 16).max() < 0.03
+    numbers = [[specimen[within].values[sweep.sample_places[0].path] for within in range(samples)] for specimen in kept]
+    shares = np.argsort(np.argsort(np.ravel(numbers))).reshape(-1, samples) / np.size(numbers)
+    assert (np.ptp(shares, axis=1) > 0.2).all()  # spread over the samples of each specimen
+
+
 def test_a_latin_hypercube_fills_every_row_once(tmp_path: Path) -> None:
     points = np.array([design_point("latin_hypercube", (3, 0), k, count=50, dimensions=3) for k in range(50)])
     for column in points.T:
