@@ -111,6 +111,8 @@ def _counts(store: Store, sweep: Sweep) -> list[str]:
     counts = split_counts(store)
     splits = [(name, str(count)) for name, count in counts.items()]
     lines = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
+    if sweep.per_specimen > 1 and (apart := sweep.settings.splits.out_of_distribution):
+        lines += [f"One sample that satisfies the rule of {' or '.join(apart)} takes all samples of its specimen there.", ""]
     lines += [*empty_split_lines(counts, sweep.settings.splits), ""]
     failed = [(reason, str(count)) for reason, count in failures(store)]
     warned = [(words, str(count)) for words, count in warnings_of(store)]

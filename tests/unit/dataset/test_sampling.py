@@ -146,6 +146,18 @@ def test_splits_follow_specimens_and_rules(tmp_path: Path) -> None:
     assert shares == pytest.approx([0.5, 0.25, 0.25], abs=0.1)  # three standard deviations of some 230 specimens
 
 
+def test_no_other_part_has_a_sample_that_satisfies_the_rule_of_one(tmp_path: Path) -> None:
+    inner = TEXT.replace("[experiment.loading.pieces.0.to]", "[experiment.material.c10]")
+    block = decoded(computed(sweep_of(tmp_path, inner, samples=300).text, range(300), lost="nothing needs to be run"))
+    softer, apart = block["instantaneous_shear_modulus"].reshape(-1, 3) < 4000, block["split"].reshape(-1, 3) == 3
+    assert (apart == softer.any(axis=1, keepdims=True)).all()
+    assert (softer.any(axis=1) != softer[:, 0]).any()
+    assert (softer.any(axis=1) != softer.all(axis=1)).any()
+    few = decoded(computed(sweep_of(tmp_path, inner, samples=301).text, [300], lost="nothing needs to be run"))
+    whole = decoded(computed(sweep_of(tmp_path, inner, samples=303).text, [302, 300], lost="nothing needs to be run"))
+    assert few["split"][0] == whole["split"][0] == whole["split"][1]
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
