@@ -76,6 +76,8 @@ class JudgedSamples:
     """That of the forces as they are; the rest is added."""
     cases: tuple[str, ...] = ()
     """Hash of the case of each sample, as the store has it."""
+    specimens: int | None = None
+    """Number of specimens that the samples are of; None where each has its own."""
 
     @property
     def block_size(self) -> Array:
@@ -156,7 +158,8 @@ def judged_samples(
     given = noise if noise is not None else 0.0 if source == READ_FORCE else ROUNDING_NOISE
     stated = float(np.hypot(electronic, given))
     cases = tuple(map(str, data["case_id"].values))
-    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic, cases)
+    specimens = len(np.unique(data["specimen"].values))
+    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic, cases, specimens)
 
 
 def stored_experiment(store: str | Path) -> Grasp:

@@ -202,6 +202,17 @@ def test_an_estimator_that_was_trained_on_what_it_is_ranked_by_is_warned_of(tmp_
     assert "trained on" not in as_text([], ranked, (), unseen)
 
 
+def test_intervals_of_grasps_that_share_specimens_are_said_to_be_too_narrow() -> None:
+    apart = replace(made_samples(12, response()), specimens=12)
+    shared = replace(apart, specimens=3)
+    words = "the 12 grasps are of 3 specimens"
+    for text in (as_text([], shared, ()), " ".join(as_summary([], shared).split())):
+        assert words in text
+        assert "2 times as wide" in text
+    assert record([], shared, {})["specimens"] == 3
+    assert "specimens" not in as_text([], apart, ()) + as_summary([], apart)
+
+
 @pytest.mark.parametrize("contrasts", [(1.69, 1.69), (1.5, 4.0), (1.5, 100.0)])
 def test_labels_of_contrasts_are_not_written_over_each_other(contrasts: tuple[float, float]) -> None:
     """All lumps may have one contrast, or nearly, around which a logarithmic axis labels every tick between powers of ten."""
