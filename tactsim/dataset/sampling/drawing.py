@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import scipy
+from pydantic import BaseModel
 
 from tactsim.array import Array
 from tactsim.case.loading import validated_case
@@ -18,8 +19,11 @@ from tactsim.dataset.sampling.settings import DesignName
 from tactsim.dataset.sampling.sweep import Place, Sweep, filled, sizes_of
 from tactsim.errors import InputError
 from tactsim.experiments.recording import seed_place
+from tactsim.interfaces.seeds import SEED, entries, seeds_in
 
 SAME_REFUSALS = 4
+CHANNELS = "scatter"
+"""Name of fields that say how the channels of a sensor differ; their seed is that of the sensor, not of its noise."""
 SPECIMENS, SAMPLES, NOISE = 0, 1, 2
 """Streams of random numbers of a sweep."""
 WITHIN = 1
@@ -91,8 +95,11 @@ def _accepted(sweep: Sweep, specimen: int, sample: int, attempt: int) -> Drawn:
     used: dict[Path, float] = {}
     value = filled(sweep.document.value, (), drawn, used)
     _seed_noise(value["experiment"], seed_place(sweep.kind), noise_seed(sweep, sample))
-    document = replace(sweep.document, value=value)
-    return Drawn(sample, specimen, validated_case(document, sweep.where), used, attempt)
+    case = validated_case(replace(sweep.document, value=value), sweep.where)
+    if not seed_place(sweep.kind):
+        experiment = _seeded(case.experiment, value["experiment"], noise_seed(sweep, sample))
+        case = case.model_copy(update={"experiment": experiment})
+    return Drawn(sample, specimen, case, used, attempt)
 
 
 def _seed_noise(experiment: Any, place: tuple[str, ...], seed: int) -> None:
@@ -103,13 +110,26 @@ def _seed_noise(experiment: Any, place: tuple[str, ...], seed: int) -> None:
         experiment.setdefault(place[-1], seed)
 
 
+def _seeded(model: BaseModel, written: Any, seed: int) -> BaseModel:
+    """A model with this seed wherever it has one that its file does not name; other channels would be other sensors."""
+    changes: dict[str, Any] = {}
+    for name, item in entries(model):
+        given = written.get(name) if isinstance(written, dict) else None
+        if name == SEED and given is None and isinstance(item, int):
+            changes[name] = seed
+        elif isinstance(item, BaseModel) and name != CHANNELS:
+            changes[name] = _seeded(item, given, seed)
+    return model.model_copy(update=changes) if changes else model
+
+
 def used_seed(sweep: Sweep, drawn: Drawn) -> int:
     """The seed from which the noise of a sample was drawn."""
-    place = seed_place(sweep.kind)
-    entry: Any = drawn.case.experiment if drawn.case and place else None
-    for key in place:
-        entry = getattr(entry, key, None)
-    return noise_seed(sweep, drawn.sample) if entry is None else int(entry)
+    if drawn.case is None:
+        return noise_seed(sweep, drawn.sample)
+    place = ".".join(seed_place(sweep.kind))
+    seeds = dict(seeds_in(drawn.case.experiment))
+    noise = [seed for path, seed in seeds.items() if (path == place if place else CHANNELS not in path.split("."))]
+    return noise[0] if noise else noise_seed(sweep, drawn.sample)
 
 
 def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, attempt: int) -> dict[Path, tuple[Any, float]]:
