@@ -163,6 +163,10 @@ def _check_splits(sweep: Sweep, labels: list[Variable]) -> None:
             place = (SECTION, "splits", "out_of_distribution", split, name)
             if name not in known:
                 raise sweep.error(place, f"unknown label{suggestion(name, known)}; labels: {', '.join(known) or 'none'}")
+            along = [dimension for dimension in known[name].dimensions if dimension != "inclusion"]
+            if along and not sweep.checked:  # those of a store stay readable
+                single = ", ".join(one.name for one in labels if set(one.dimensions) <= {"inclusion"})
+                raise sweep.error(place, f"has several numbers, along {along[0]}; labels of one number: {single or 'none'}")
             meanings = known[name].meanings
             if isinstance(condition.equal, str) and condition.equal not in meanings:
                 raise sweep.error((*place, "equal"), f"{condition.equal!r}; allowed: {', '.join(meanings) or 'a number'}")

@@ -158,6 +158,13 @@ def test_no_other_part_has_a_sample_that_satisfies_the_rule_of_one(tmp_path: Pat
     assert few["split"][0] == whole["split"][0] == whole["split"][1]
 
 
+def test_a_rule_about_a_label_of_several_numbers_is_refused(tmp_path: Path) -> None:
+    """Whether it is for x, y or z it could not say: all three had to satisfy it."""
+    text = (CASES / "sweep_lumps.yaml").read_text().replace("inclusion_depth: {above: 0.009}", "inclusion_center: {above: 0.02}")
+    with pytest.raises(CaseError, match=r"deeper.inclusion_center: has several numbers, along axis; .*inclusion_depth"):
+        layout_of(sweep_of(tmp_path, text))
+
+
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
