@@ -104,6 +104,16 @@ def shared_words(samples: JudgedSamples) -> str:
     )
 
 
+def readout_words(samples: JudgedSamples) -> str:
+    """What a reader must know if the sensors are not the same in all grasps; empty if they are."""
+    if not samples.varied_readout:
+        return ""
+    return (
+        f"Warning: {', '.join(samples.varied_readout)} varies, but every grasp is judged with noise and references as the "
+        "readout of the first sample gives them; regions are too wide or too narrow for the others."
+    )
+
+
 def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str], seen: int = 0) -> str:
     """The table in Markdown; ``seen`` samples were those of the training."""
     lumps = sum(truth.present for truth in samples.truths)
@@ -115,7 +125,7 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
         f"In brackets the {INTERVAL:.0%} interval, of rates by Wilson, of all else by the bootstrap. Depths are those of "
         "the centre below the upper face; inclusion_depth in the data set is that of the highest point.",
         "",
-        *([shared_words(samples), ""] if shared_words(samples) else []),
+        *(line for words in (shared_words(samples), readout_words(samples)) if words for line in (words, "")),
         *([seen_words(seen, samples), ""] if seen else []),
         *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),
         "",
@@ -140,7 +150,7 @@ def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples, seen: int = 0) 
     for one in ranked:
         rows.append([one.name, *(_cell(one.measures, place, unit).partition(" ")[0] for _, place, unit in BRIEF)])
     ratios = [f"{name}: median errors over those of {BASELINE}: {_ratios(one)}" for name, one in against_baseline(ranked).items()]
-    given = (BRIEFLY, *ratios, shared_words(samples), seen_words(seen, samples))
+    given = (BRIEFLY, *ratios, shared_words(samples), readout_words(samples), seen_words(seen, samples))
     words = [line for text in given for line in wrap(text, SCREEN)]
     return "\n".join([*wrap(counts + noise_in_words(samples.noise), SCREEN), "", *aligned(rows), "", *words])
 
