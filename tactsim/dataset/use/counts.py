@@ -78,15 +78,15 @@ def never_drawn(store: Store, sweep: Sweep) -> list[tuple[str, str, float]]:
         return []
     computed = np.flatnonzero(store.read("status") != PENDING)
     specimens = store.read("specimen", computed)
-    found = []
+    absent = []
     for place in sweep.places:
         drawn = store.read(place.variable, computed)
         chosen = np.isfinite(drawn)
         independent = len(np.unique(specimens[chosen]))
         for option, number, share in place.distribution.shares():
             if share > 0 and (1 - share) ** independent < UNLIKELY and not (drawn[chosen] == number).any():
-                found.append((place.key, shown(option), share))
-    return found
+                absent.append((place.key, shown(option), share))
+    return absent
 
 
 def failures(store: Store) -> list[tuple[str, int]]:
