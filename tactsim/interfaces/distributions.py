@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,6 +32,10 @@ class Distribution(ABC):
     def options(self) -> tuple[Any, ...] | None:
         """What is chosen from; None where that is not a list."""
         return None
+
+    def shares(self) -> Iterator[tuple[Any, float, float]]:
+        """Each option, the number that is stored for it, and its probability; nothing where it is no list."""
+        yield from ()
 
     @abstractmethod
     def value(self, share: float) -> tuple[Any, float]:
@@ -113,11 +117,22 @@ class Listed(Distribution):
         """Which option."""
         return min(int(np.searchsorted(self.cumulative, share, side="right")), len(self.entries) - 1)
 
+    def shares(self) -> Iterator[tuple[Any, float, float]]:
+        """Each option, the number that is stored for it, and its probability, equal ones together."""
+        together: dict[float, tuple[Any, float]] = {}
+        for index, share in enumerate(np.diff(self.cumulative, prepend=0.0)):
+            number = self._number(index)
+            option, before = together.get(number, (self.entries[index], 0.0))
+            together[number] = option, before + float(share)
+        yield from ((option, number, share) for number, (option, share) in together.items())
+
     def value(self, share: float) -> tuple[Any, float]:
         """The option."""
         index = self.index(share)
-        number = float(index) if self.numbers is None else self.numbers.written(self.numbers.values[index])[1]
-        return self.entries[index], number
+        return self.entries[index], self._number(index)
+
+    def _number(self, index: int) -> float:
+        return float(index) if self.numbers is None else self.numbers.written(self.numbers.values[index])[1]
 
 
 def distribution(written: dict[str, Any]) -> Distribution:

@@ -60,6 +60,7 @@ def record(ranked: Sequence[Ranked], samples: JudgedSamples, about: Mapping[str,
         "noise": {"value": samples.noise, "unit": "N"},
         "block_size": {"value": samples.block_size.tolist(), "unit": "m"},
         "samples": len(samples.truths),
+        "specimens": len(samples.truths) if samples.specimens is None else samples.specimens,
         "interval": {"probability": INTERVAL, "rates": "Wilson", "bootstrap_samples": DRAWN},
         "labels": LABELS,
         "estimators": [one.record() for one in ranked],
@@ -92,6 +93,27 @@ def seen_words(seen: int, samples: JudgedSamples) -> str:
     )
 
 
+def shared_words(samples: JudgedSamples) -> str:
+    """What a reader must know of the intervals if grasps share their specimens; empty if none does."""
+    count = len(samples.truths)
+    if samples.specimens is None or samples.specimens == count:
+        return ""
+    return (
+        f"Warning: the {count} grasps are of {samples.specimens} specimens, but intervals take each grasp as another one: grasps "
+        f"of one lump err alike, so that intervals may be {(count / samples.specimens) ** 0.5:.2g} times as wide."
+    )
+
+
+def readout_words(samples: JudgedSamples) -> str:
+    """What a reader must know if the sensors are not the same in all grasps; empty if they are."""
+    if not samples.varied_readout:
+        return ""
+    return (
+        f"Warning: {', '.join(samples.varied_readout)} varies, but every grasp is judged with noise and references as the "
+        "readout of the first sample gives them; regions are too wide or too narrow for the others."
+    )
+
+
 def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str], seen: int = 0) -> str:
     """The table in Markdown; ``seen`` samples were those of the training."""
     lumps = sum(truth.present for truth in samples.truths)
@@ -100,8 +122,10 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
         "",
         f"{len(samples.truths)} grasps, {lumps} with a lump, {len(samples.truths) - lumps} without; readings {samples.source}, "
         f"noise of a reading {noise_in_words(samples.noise)}. {SCORE}",
-        f"In brackets the {INTERVAL:.0%} interval, of rates by Wilson, of all else by the bootstrap.",
+        f"In brackets the {INTERVAL:.0%} interval, of rates by Wilson, of all else by the bootstrap. Depths are those of "
+        "the centre below the upper face; inclusion_depth in the data set is that of the highest point.",
         "",
+        *(line for words in (shared_words(samples), readout_words(samples)) if words for line in (words, "")),
         *([seen_words(seen, samples), ""] if seen else []),
         *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),
         "",
@@ -126,7 +150,8 @@ def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples, seen: int = 0) 
     for one in ranked:
         rows.append([one.name, *(_cell(one.measures, place, unit).partition(" ")[0] for _, place, unit in BRIEF)])
     ratios = [f"{name}: median errors over those of {BASELINE}: {_ratios(one)}" for name, one in against_baseline(ranked).items()]
-    words = [line for given in (BRIEFLY, *ratios, seen_words(seen, samples)) for line in wrap(given, SCREEN)]
+    given = (BRIEFLY, *ratios, shared_words(samples), readout_words(samples), seen_words(seen, samples))
+    words = [line for text in given for line in wrap(text, SCREEN)]
     return "\n".join([*wrap(counts + noise_in_words(samples.noise), SCREEN), "", *aligned(rows), "", *words])
 
 

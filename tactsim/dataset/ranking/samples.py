@@ -76,6 +76,10 @@ class JudgedSamples:
     """That of the forces as they are; the rest is added."""
     cases: tuple[str, ...] = ()
     """Hash of the case of each sample, as the store has it."""
+    specimens: int | None = None
+    """Number of specimens that the samples are of; None where each has its own."""
+    varied_readout: tuple[str, ...] = ()
+    """Key paths of the readout that vary: noise and references are those of the readout of the first sample."""
 
     @property
     def block_size(self) -> Array:
@@ -156,7 +160,15 @@ def judged_samples(
     given = noise if noise is not None else 0.0 if source == READ_FORCE else ROUNDING_NOISE
     stated = float(np.hypot(electronic, given))
     cases = tuple(map(str, data["case_id"].values))
-    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic, cases)
+    specimens = len(np.unique(data["specimen"].values))
+    varied = _varied_readout(data) if source == READ_FORCE else ()
+    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic, cases, specimens, varied)
+
+
+def _varied_readout(data: xarray.Dataset) -> tuple[str, ...]:
+    """Key paths of what varies in the readout, but for seeds."""
+    names = [str(name) for name in data if str(name).startswith("varied_readout")]
+    return tuple(str(data[name].attrs["long_name"]) for name in names if not name.endswith("_seed"))
 
 
 def stored_experiment(store: str | Path) -> Grasp:

@@ -44,18 +44,18 @@ def computed(text: str, samples: Sequence[int], lost: str = "", *, folder: str |
     done = []
     for specimen, numbers in itertools.groupby(samples, key=lambda number: number // sweep.per_specimen):
         drawn = drawn_specimen(sweep, specimen)
-        split = _split(sweep, layout, drawn[0])
+        split = _split(sweep, layout, drawn)
         done += [_sample(sweep, layout, drawn[number - drawn[0].sample], split, lost) for number in numbers]
     return encoded(stacked(done, layout.variables))
 
 
-def _split(sweep: Sweep, layout: Layout, first: Drawn) -> int:
-    labels: dict[str, Array] = {}
-    if first.case is not None:
-        labels = layout.recorder.labels(first.case.experiment)
-        known = {variable.name: variable for variable in layout.variables}
-        return split_of(sweep, first.specimen, labels, known)
-    return 0
+def _split(sweep: Sweep, layout: Layout, drawn: Sequence[Drawn]) -> int:
+    """Number of the part of a specimen whose samples are these; 0 if no draw of it was possible."""
+    possible = [one.case.experiment for one in drawn if one.case is not None]
+    if not possible:
+        return 0
+    known = {variable.name: variable for variable in layout.variables}
+    return split_of(sweep, drawn[0].specimen, map(layout.recorder.labels, possible), known)
 
 
 def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -> dict[str, Array]:

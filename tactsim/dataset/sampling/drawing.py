@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import scipy
+from pydantic import BaseModel
 
 from tactsim.array import Array
 from tactsim.case.loading import validated_case
@@ -18,10 +19,17 @@ from tactsim.dataset.sampling.settings import DesignName
 from tactsim.dataset.sampling.sweep import Place, Sweep, filled, sizes_of
 from tactsim.errors import InputError
 from tactsim.experiments.recording import seed_place
+from tactsim.interfaces.seeds import SEED, entries, seeds_in
 
 SAME_REFUSALS = 4
+CHANNELS = "scatter"
+"""Name of fields that say how the channels of a sensor differ; their seed is that of the sensor, not of its noise."""
 SPECIMENS, SAMPLES, NOISE = 0, 1, 2
 """Streams of random numbers of a sweep."""
+WITHIN = 1
+"""Stream, within SAMPLES, of what all specimens share."""
+SOBOL_BITS = 30
+"""Binary digits of the coordinates of a Sobol point."""
 BLOCK = 1024
 """Sobol points that are made together; a power of two keeps their balance."""
 
@@ -87,8 +95,11 @@ def _accepted(sweep: Sweep, specimen: int, sample: int, attempt: int) -> Drawn:
     used: dict[Path, float] = {}
     value = filled(sweep.document.value, (), drawn, used)
     _seed_noise(value["experiment"], seed_place(sweep.kind), noise_seed(sweep, sample))
-    document = replace(sweep.document, value=value)
-    return Drawn(sample, specimen, validated_case(document, sweep.where), used, attempt)
+    case = validated_case(replace(sweep.document, value=value), sweep.where)
+    if not seed_place(sweep.kind):
+        experiment = _seeded(case.experiment, value["experiment"], noise_seed(sweep, sample))
+        case = case.model_copy(update={"experiment": experiment})
+    return Drawn(sample, specimen, case, used, attempt)
 
 
 def _seed_noise(experiment: Any, place: tuple[str, ...], seed: int) -> None:
@@ -99,13 +110,26 @@ def _seed_noise(experiment: Any, place: tuple[str, ...], seed: int) -> None:
         experiment.setdefault(place[-1], seed)
 
 
+def _seeded(model: BaseModel, written: Any, seed: int) -> BaseModel:
+    """A model with this seed wherever it has one that its file does not name; other channels would be other sensors."""
+    changes: dict[str, Any] = {}
+    for name, item in entries(model):
+        given = written.get(name) if isinstance(written, dict) else None
+        if name == SEED and given is None and isinstance(item, int):
+            changes[name] = seed
+        elif isinstance(item, BaseModel) and name != CHANNELS:
+            changes[name] = _seeded(item, given, seed)
+    return model.model_copy(update=changes) if changes else model
+
+
 def used_seed(sweep: Sweep, drawn: Drawn) -> int:
     """The seed from which the noise of a sample was drawn."""
-    place = seed_place(sweep.kind)
-    entry: Any = drawn.case.experiment if drawn.case and place else None
-    for key in place:
-        entry = getattr(entry, key, None)
-    return noise_seed(sweep, drawn.sample) if entry is None else int(entry)
+    if drawn.case is None:
+        return noise_seed(sweep, drawn.sample)
+    place = ".".join(seed_place(sweep.kind))
+    seeds = dict(seeds_in(drawn.case.experiment))
+    noise = [seed for path, seed in seeds.items() if (path == place if place else CHANNELS not in path.split("."))]
+    return noise[0] if noise else noise_seed(sweep, drawn.sample)
 
 
 def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, attempt: int) -> dict[Path, tuple[Any, float]]:
@@ -115,6 +139,9 @@ def _values(sweep: Sweep, stream: int, places: tuple[Place, ...], number: int, a
         point = redrawn_point(seed, number, attempt, len(places))
     elif settings.design == "grid":
         point = grid_point(sizes_of(places), number)
+    elif settings.design == "sobol" and stream == SAMPLES:
+        within = divmod(number, sweep.per_specimen)
+        point = point_within(seed, *within, dimensions=len(places), beside=len(sweep.specimen_places))
     else:
         specimens = -(-sweep.samples // sweep.per_specimen)
         count = specimens * (1 if stream == SPECIMENS else sweep.per_specimen)
@@ -137,6 +164,22 @@ def design_point(design: DesignName, seed: tuple[int, ...], number: int, *, coun
     return _sobol(seed, number // BLOCK, dimensions)[number % BLOCK]
 
 
+def point_within(seed: tuple[int, ...], specimen: int, within: int, *, dimensions: int, beside: int) -> Array:
+    """Sobol point (dimensions,) in [0, 1) of one sample of a specimen, independent of the ``beside`` coordinates of the specimen.
+
+    Two Sobol sequences begin with the same digits, whatever their scrambling, so that a sequence over the samples would follow
+    that over the specimens. Instead, the specimen has a point in further dimensions of its own sequence, which is shifted, digit
+    by digit, by the points of a short sequence over the samples of any specimen: the first, the second, ... samples of the
+    specimens cover the cube evenly, and so do the samples of each specimen.
+    """
+    if dimensions == 0:
+        return np.zeros(0)
+    of_specimen = _sobol(seed, specimen // BLOCK, beside + dimensions)[specimen % BLOCK, beside:]
+    of_sample = _sobol((*seed, WITHIN), within // BLOCK, dimensions)[within % BLOCK]
+    digits = [np.ldexp(point, SOBOL_BITS).astype(np.int64) for point in (of_specimen, of_sample)]
+    return np.ldexp((digits[0] ^ digits[1]).astype(float), -SOBOL_BITS)
+
+
 def redrawn_point(seed: tuple[int, ...], number: int, attempt: int, dimensions: int) -> Array:
     """Point (dimensions,) of a sample whose case was refused ``attempt`` times before: random, whatever the design."""
     return np.random.default_rng([*seed, number, attempt]).random(dimensions)
@@ -155,7 +198,7 @@ def _latin_hypercube(seed: tuple[int, ...], count: int, dimensions: int) -> Arra
 
 @lru_cache(maxsize=8)
 def _sobol(seed: tuple[int, ...], block: int, dimensions: int) -> Array:
-    engine = scipy.stats.qmc.Sobol(dimensions, rng=np.random.default_rng(seed))
+    engine = scipy.stats.qmc.Sobol(dimensions, bits=SOBOL_BITS, rng=np.random.default_rng(seed))
     if block:
         engine.fast_forward(block * BLOCK)
     with warnings.catch_warnings():

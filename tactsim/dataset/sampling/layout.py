@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import lru_cache
 from typing import Any
@@ -123,12 +124,18 @@ def most_inclusions(document: Any) -> int:
     return len(inclusions) if isinstance(inclusions, list) else 0
 
 
-def split_of(sweep: Sweep, specimen: int, labels: Values, recorder_variables: dict[str, Variable]) -> int:
-    """Number of the part that a specimen belongs to, from the labels of its first sample."""
+def split_of(sweep: Sweep, specimen: int, labels: Iterable[Values], recorder_variables: dict[str, Variable]) -> int:
+    """Number of the part that a specimen belongs to, from the labels of each of its samples, also of those beyond the last.
+
+    One sample that satisfies the conditions of a part takes its specimen there: no other part may have such a sample, and all
+    samples of a specimen belong together.
+    """
     splits = sweep.settings.splits
+    samples = list(labels) if splits.out_of_distribution else []
     for number, conditions in enumerate(splits.out_of_distribution.values(), 3):
-        if all(_holds(condition, labels, recorder_variables[name]) for name, condition in conditions.items()):
-            return number
+        for one in samples:
+            if all(_holds(condition, one, recorder_variables[name]) for name, condition in conditions.items()):
+                return number
     share = np.random.default_rng([sweep.settings.seed, SPLITTING, specimen]).random()
     return 0 if share < splits.train else 1 if share < splits.train + splits.validation else 2
 
@@ -157,6 +164,10 @@ def _check_splits(sweep: Sweep, labels: list[Variable]) -> None:
             place = (SECTION, "splits", "out_of_distribution", split, name)
             if name not in known:
                 raise sweep.error(place, f"unknown label{suggestion(name, known)}; labels: {', '.join(known) or 'none'}")
+            along = [dimension for dimension in known[name].dimensions if dimension != "inclusion"]
+            if along and not sweep.checked:  # those of a store stay readable
+                single = ", ".join(one.name for one in labels if set(one.dimensions) <= {"inclusion"})
+                raise sweep.error(place, f"has several numbers, along {along[0]}; labels of one number: {single or 'none'}")
             meanings = known[name].meanings
             if isinstance(condition.equal, str) and condition.equal not in meanings:
                 raise sweep.error((*place, "equal"), f"{condition.equal!r}; allowed: {', '.join(meanings) or 'a number'}")

@@ -50,7 +50,7 @@ class Splits(FrozenModel):
     validation: Share = 0.1
     """Share for choosing between models; the rest is ``test``."""
     out_of_distribution: dict[str, dict[str, Condition]] = {}
-    """Name -> conditions by label; a specimen that satisfies all of the first such name belongs to it and to no other part."""
+    """Name -> conditions by label; a specimen with a sample that satisfies all of a name belongs to the first such name alone."""
 
     @model_validator(mode="after")
     def _possible(self) -> Self:

@@ -19,6 +19,7 @@ from tactsim.dataset.store.verifying import refuse_redescribed
 from tactsim.dataset.use.counts import (
     empty_splits,
     failures,
+    never_drawn,
     redrawn,
     split_counts,
     split_shares,
@@ -38,6 +39,8 @@ GENERAL_LIMITS = (
     "Failed samples, if there are any, are not random: they gather where the tissue is squeezed most.",
     "Numbers repeat on one machine and with the same versions; across machines expect differences of about 1e-8.",
 )
+MOST_OPTIONS = 10
+"""Options that no sample has, of which a sentence tells."""
 LIKELY = 0.99
 """Probability with which enough specimens put one into every split."""
 
@@ -111,11 +114,22 @@ def _counts(store: Store, sweep: Sweep) -> list[str]:
     counts = split_counts(store)
     splits = [(name, str(count)) for name, count in counts.items()]
     lines = _table("Counts", ("status", "samples"), rows) + _table("Splits, by specimen", ("split", "samples done"), splits)
-    lines += [*empty_split_lines(counts, sweep.settings.splits), ""]
+    if sweep.per_specimen > 1 and (apart := sweep.settings.splits.out_of_distribution):
+        lines += [f"One sample that satisfies the rule of {' or '.join(apart)} takes all samples of its specimen there.", ""]
+    lines += [*map(plain, never_drawn_lines(store, sweep)), *empty_split_lines(counts, sweep.settings.splits), ""]
     failed = [(reason, str(count)) for reason, count in failures(store)]
     warned = [(words, str(count)) for words, count in warnings_of(store)]
     lines += _table("Failures", ("reason", "samples"), failed) if failed else []
     return lines + (_table("Warnings of samples that are done", ("warning", "samples"), warned) if warned else [])
+
+
+def never_drawn_lines(store: Store, sweep: Sweep) -> list[str]:
+    """A sentence on each option that no sample has because its cases were refused."""
+    return [
+        f"warning: no sample has {option} for {key}, which {100 * share:.3g} % of the draws have: their cases were refused "
+        "and drawn again; run such a case to see why, or leave that option out."
+        for key, option, share in never_drawn(store, sweep)[:MOST_OPTIONS]
+    ]
 
 
 def empty_split_lines(counts: Mapping[str, int], splits: Splits) -> list[str]:

@@ -7,15 +7,18 @@ from collections.abc import Mapping
 import numpy as np
 
 from tactsim.dataset.sampling.settings import Splits
+from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import waiting_in_journal
 from tactsim.dataset.text_counts import LONGEST_WARNING, TextCounts
-from tactsim.errors import StorageError
+from tactsim.errors import StorageError, shown
 from tactsim.outside.text import one_line
 
 MOST_REASONS = 50
 """Reasons of failures, and warnings, that are listed; the rest are counted."""
+UNLIKELY = 0.01
+"""Probability of drawing an option not once, below which it is said to be impossible."""
 
 
 def status_lines(store: Store) -> list[str]:
@@ -65,6 +68,25 @@ def redrawn(store: Store) -> tuple[int, int]:
     draws = store.read("redraws")[computed][first].astype(int)
     refused = draws + (store.read("case_id")[computed][first] == "")  # of a specimen without a case the last one too
     return int((refused > 0).sum()), int(refused.sum())
+
+
+def never_drawn(store: Store, sweep: Sweep) -> list[tuple[str, str, float]]:
+    """Key path, option and its share of the draws, of every option that no sample has although draws were refused and so many
+    specimens are there that chance does not explain it.
+    """
+    if not redrawn(store)[1]:
+        return []
+    computed = np.flatnonzero(store.read("status") != PENDING)
+    specimens = store.read("specimen", computed)
+    absent = []
+    for place in sweep.places:
+        drawn = store.read(place.variable, computed)
+        chosen = np.isfinite(drawn)
+        independent = len(np.unique(specimens[chosen]))
+        for option, number, share in place.distribution.shares():
+            if share > 0 and (1 - share) ** independent < UNLIKELY and not (drawn[chosen] == number).any():
+                absent.append((place.key, shown(option), share))
+    return absent
 
 
 def failures(store: Store) -> list[tuple[str, int]]:

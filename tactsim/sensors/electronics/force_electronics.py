@@ -43,9 +43,9 @@ class ForceElectronics(FrozenModel):
     chain: SignalChain = SignalChain(sampling_rate=200.0, low_pass=LowPass(cutoff=40.0))
     """Electronics of each channel."""
     calibration: AnyCalibration | None = None
-    """From conductance to force; null is the line through the film's own conductances at the ``calibration_forces``."""
+    """From conductance to force; null is the least-squares line of the film's own conductances over ``calibration_forces``."""
     calibration_forces: tuple[NonNegative[Force], Positive[Force]] = (0.0, 2.0)
-    """Range of the constant forces of that calibration, read after 1 s."""
+    """Range of the constant forces of that calibration, evenly spaced and each read after 1 s."""
 
     @model_validator(mode="after")
     def _rising(self) -> Self:

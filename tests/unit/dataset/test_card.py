@@ -11,7 +11,7 @@ from types import ModuleType
 import numpy as np
 import pytest
 from drawn import colliding_words, text_of
-from sweeps import TEXT, Inline, sweep_file
+from sweeps import TEXT, Inline, run_sweep, sweep_file
 
 from tactsim.dataset.figures.card import spread, taxels
 from tactsim.dataset.running.resuming import opened_run
@@ -51,6 +51,23 @@ def test_what_samples_warn_of_is_counted(tmp_path: Path) -> None:
     assert counts[beyond] == sum("linear theory" in text for text in stored.read("warnings")) > 0
     assert beyond in card.description(tmp_path / "s.zarr")
     assert "## Warnings of samples that are done" in card_text(stored, sweep, layout_of(sweep))
+
+
+def test_an_option_whose_cases_are_all_refused_is_named(tmp_path: Path) -> None:
+    """A law lacks a constant, so that half of the draws are refused and drawn again: a possible case takes their place."""
+    listed = "inner_radius: {values: [1 mm, 1.1 mm, 1 mm]}\n  base: {choice: [bonded, slipping]}"
+    text = TEXT.replace("inner_radius: {uniform: [1 mm, 2.5 mm]}", listed)
+    text = text.replace("kind: neo_hookean", "kind: {choice: [neo_hookean, mooney_rivlin_2]}")
+    sweep = load_sweep(sweep_file(tmp_path, text))
+    stored = run_sweep(sweep, tmp_path / "s.zarr").store
+    assert set(stored.read("varied_material_kind")) == {0.0}
+    (line,) = card.never_drawn_lines(stored, sweep)
+    assert "no sample has 'mooney_rivlin_2' for experiment.material.kind, which 50 % of the draws have" in line
+    assert line in card_text(stored, sweep, layout_of(sweep))
+
+
+def test_nothing_is_said_of_options_without_a_refusal(store: tuple[Path, str]) -> None:
+    assert "no sample has" not in store[1].replace("no sample that is done", "")
 
 
 def test_columns_of_long_names_align(store: tuple[Path, str], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray
 from drawn import colliding_words
 from made_grasps import LAYOUT, SIZE, made_samples, made_store, plain_result, response
 from scipy.stats import norm
@@ -20,7 +21,7 @@ from tactsim.cli import main
 from tactsim.dataset.figures.estimator_ranking import AXES, errors_figure, ranking_figures, roc, roc_figure
 from tactsim.dataset.ranking.measures import JudgedEstimate, binned, interval, measures, outcome, penalty, ranking, share
 from tactsim.dataset.ranking.report import against_baseline, as_summary, as_text, record
-from tactsim.dataset.ranking.samples import Truth, judged_samples
+from tactsim.dataset.ranking.samples import Truth, _varied_readout, judged_samples
 from tactsim.dataset.ranking.training import seen_in_training
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
@@ -200,6 +201,27 @@ def test_an_estimator_that_was_trained_on_what_it_is_ranked_by_is_warned_of(tmp_
     unseen = seen_in_training(weights, replace(ranked, cases=ranked.cases[8:]))
     assert unseen == seen_in_training(replace(weights, trained_on=("",)), replace(ranked, cases=("",))) == 0
     assert "trained on" not in as_text([], ranked, (), unseen)
+
+
+def test_intervals_of_grasps_that_share_specimens_are_said_to_be_too_narrow() -> None:
+    apart = replace(made_samples(12, response()), specimens=12)
+    shared = replace(apart, specimens=3)
+    words = "the 12 grasps are of 3 specimens"
+    for text in (as_text([], shared, ()), " ".join(as_summary([], shared).split())):
+        assert words in text
+        assert "2 times as wide" in text
+    assert record([], shared, {})["specimens"] == 3
+    assert "specimens" not in as_text([], apart, ()) + as_summary([], apart)
+
+
+def test_a_ranking_says_that_it_takes_the_noise_of_the_first_sample_for_all() -> None:
+    varied = ("experiment.readout.chain.noise.white",)
+    samples = replace(made_samples(4, response()), varied_readout=varied)
+    for text in (as_text([], samples, ()), " ".join(as_summary([], samples).split())):
+        assert "noise.white varies, but every grasp is judged with noise and references as the readout of the first" in text
+    words = {"long_name": varied[0]}
+    names = ("varied_readout_chain_noise_white", "varied_readout_seed", "varied_contact_friction")
+    assert _varied_readout(xarray.Dataset({name: ("sample", [1.0], words) for name in names})) == varied
 
 
 @pytest.mark.parametrize("contrasts", [(1.69, 1.69), (1.5, 4.0), (1.5, 100.0)])

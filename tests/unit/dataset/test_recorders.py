@@ -48,7 +48,7 @@ def test_shipped_sweeps_can_be_drawn(path: Path) -> None:
             assert drawn.case is not None, drawn.refusal
             labels = layout.recorder.labels(drawn.case.experiment)
             assert all(np.shape(value) == known[name].sizes for name, value in labels.items())
-            assert 0 <= split_of(sweep, specimen, labels, known) < len(sweep.settings.splits.names)
+            assert 0 <= split_of(sweep, specimen, [labels], known) < len(sweep.settings.splits.names)
     assert all(variable.unit and variable.description for variable in layout.variables)
 
 

@@ -55,6 +55,25 @@ def test_a_sobol_design_is_the_same_across_its_blocks() -> None:
     assert (cells == 8).all()  # what a net of 2^11 points in two dimensions has in each of 256 squares
 
 
+@pytest.mark.parametrize(("text", "samples"), [(TEXT, 3), (TEXT, 2), ((CASES / "sweep_rates.yaml").read_text(), 3)])
+def test_what_varies_within_a_specimen_does_not_follow_the_specimen(tmp_path: Path, text: str, samples: int) -> None:
+    sweep = sweep_of(tmp_path, text.replace("samples_per_specimen: 3", f"samples_per_specimen: {samples}"))
+    drawn = [drawn_specimen(sweep, specimen) for specimen in range(128)]
+    kept = [specimen for specimen in drawn if not specimen[0].redraws]
+    assert len(kept) > 100
+    for place in sweep.specimen_places:
+        of_specimen = np.argsort(np.argsort([specimen[0].values[place.path] for specimen in kept]))
+        for inner in sweep.sample_places:
+            for within in range(samples):
+                of_sample = np.argsort(np.argsort([specimen[within].values[inner.path] for specimen in kept]))
+                together = np.histogram2d(of_specimen, of_sample, bins=4)[0] / len(kept)
+                assert abs(np.corrcoef(of_specimen, of_sample)[0, 1]) < 0.1
+                assert abs(together - 1 / 16).max() < 0.03
+    numbers = [[specimen[within].values[sweep.sample_places[0].path] for within in range(samples)] for specimen in kept]
+    shares = np.argsort(np.argsort(np.ravel(numbers))).reshape(-1, samples) / np.size(numbers)
+    assert (np.ptp(shares, axis=1) > 0.2).all()  # spread over the samples of each specimen
+
+
 def test_a_latin_hypercube_fills_every_row_once(tmp_path: Path) -> None:
     points = np.array([design_point("latin_hypercube", (3, 0), k, count=50, dimensions=3) for k in range(50)])
     for column in points.T:
@@ -125,6 +144,25 @@ def test_splits_follow_specimens_and_rules(tmp_path: Path) -> None:
     assert ((block["split"] == 3) == softer).all()
     shares = np.bincount(block["split"][~softer], minlength=3)[:3] / (~softer).sum()
     assert shares == pytest.approx([0.5, 0.25, 0.25], abs=0.1)  # three standard deviations of some 230 specimens
+
+
+def test_no_other_part_has_a_sample_that_satisfies_the_rule_of_one(tmp_path: Path) -> None:
+    inner = TEXT.replace("[experiment.loading.pieces.0.to]", "[experiment.material.c10]")
+    block = decoded(computed(sweep_of(tmp_path, inner, samples=300).text, range(300), lost="nothing needs to be run"))
+    softer, apart = block["instantaneous_shear_modulus"].reshape(-1, 3) < 4000, block["split"].reshape(-1, 3) == 3
+    assert (apart == softer.any(axis=1, keepdims=True)).all()
+    assert (softer.any(axis=1) != softer[:, 0]).any()
+    assert (softer.any(axis=1) != softer.all(axis=1)).any()
+    few = decoded(computed(sweep_of(tmp_path, inner, samples=301).text, [300], lost="nothing needs to be run"))
+    whole = decoded(computed(sweep_of(tmp_path, inner, samples=303).text, [302, 300], lost="nothing needs to be run"))
+    assert few["split"][0] == whole["split"][0] == whole["split"][1]
+
+
+def test_a_rule_about_a_label_of_several_numbers_is_refused(tmp_path: Path) -> None:
+    """Whether it is for x, y or z it could not say: all three had to satisfy it."""
+    text = (CASES / "sweep_lumps.yaml").read_text().replace("inclusion_depth: {above: 0.009}", "inclusion_center: {above: 0.02}")
+    with pytest.raises(CaseError, match=r"deeper.inclusion_center: has several numbers, along axis; .*inclusion_depth"):
+        layout_of(sweep_of(tmp_path, text))
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,7 @@ from tactsim.dataset.use.card import description
 from tactsim.dataset.use.counts import redrawn, split_counts
 from tactsim.dataset.use.loading import load
 from tactsim.errors import CaseError, InputError, StorageError, TactsimError
+from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variable import Variable
 from tactsim.shipped import CASES
 
@@ -341,6 +342,29 @@ def test_noise_differs_from_sample_to_sample_without_a_word_in_the_file(tmp_path
     seeds = [one.case.experiment.readout.seed for one in drawn]
     assert seeds == [noise_seed(unseeded, one.sample) for one in drawn] == [used_seed(unseeded, one) for one in drawn]
     assert len(set(seeds)) == 6
+
+
+@pytest.mark.parametrize(
+    ("experiment", "path"),
+    [
+        (
+            "kind: sensor_response, force: {kind: square, high: {values: [1 N, 2 N]}, frequency: 1 Hz, duration: 1 s}",
+            "seed",
+        ),
+        ("kind: film_creep, data: {kind: synthetic, noise: {uniform: [0.001, 0.01]}}", "data.seed"),
+    ],
+)
+def test_noise_differs_between_samples_of_kinds_that_store_what_the_sweep_names(
+    tmp_path: Path, experiment: str, path: str
+) -> None:
+    """The store said other seeds than the samples had, which all were read with the noise of seed 1."""
+    text = f"schema: tactsim/sweep/1\nexperiment: {{{experiment}}}\nsweep: {{samples: 4, quantities: {{rms_error: N}}}}\n"
+    sweep = load_sweep(sweep_file(tmp_path, text))
+    drawn = [drawn_specimen(sweep, specimen)[0] for specimen in range(4)]
+    seeds = [dict(seeds_in(one.case.experiment))[path] for one in drawn]
+    assert seeds == [used_seed(sweep, one) for one in drawn] == [noise_seed(sweep, one.sample) for one in drawn]
+    fixed = drawn_specimen(load_sweep(sweep_file(tmp_path, text), (f"experiment.{path}=7",)), 1)[0]
+    assert dict(seeds_in(fixed.case.experiment))[path] == used_seed(sweep, fixed) == 7
 
 
 @pytest.mark.slow
