@@ -26,6 +26,8 @@ from tactsim.units import format_quantity
 
 SPLITTING = 3
 """Stream of random numbers that deals specimens to splits."""
+DEALT = 10
+"""Specimens that are dealt together: shares of whole tenths are exact in each ten, and small sets have a part to test with."""
 ROUND_OFF = 1e-9
 """Relative difference of two times that are equal."""
 TRIED_SPECIMENS, TRIED_OF_GRID = 3, 1000
@@ -136,8 +138,15 @@ def split_of(sweep: Sweep, specimen: int, labels: Iterable[Values], recorder_var
         for one in samples:
             if all(_holds(condition, one, recorder_variables[name]) for name, condition in conditions.items()):
                 return number
-    share = np.random.default_rng([sweep.settings.seed, SPLITTING, specimen]).random()
+    share = _dealt(sweep.settings.seed, specimen)
     return 0 if share < splits.train else 1 if share < splits.train + splits.validation else 2
+
+
+def _dealt(seed: int, specimen: int) -> float:
+    """A random number in [0, 1) for a specimen; of those that are dealt together, one lies in each of as many equal parts."""
+    hand, place = divmod(specimen, DEALT)
+    generator = np.random.default_rng([seed, SPLITTING, hand])
+    return float((generator.permutation(DEALT)[place] + generator.random(DEALT)[place]) / DEALT)
 
 
 def _holds(condition: Condition, labels: Values, variable: Variable) -> bool:

@@ -143,9 +143,9 @@ def empty_split_lines(counts: Mapping[str, int], splits: Splits) -> list[str]:
 
 
 def _specimens_needed(share: float) -> str:
-    """How many specimens make it likely that a part with a share has one, as each of them falls to it by that chance."""
+    """How many specimens make it likely that a part with a share has one, if each of them fell to it by that chance alone."""
     count = int(np.ceil(np.log(1 - LIKELY) / np.log1p(-share))) if share < 1 else 1
-    return f"a share of {100 * share:.3g} % has a specimen with a probability of {100 * LIKELY:g} % among {count}"
+    return f"a share of {100 * share:.3g} % has a specimen with a probability of at least {100 * LIKELY:g} % among {count}"
 
 
 def _figures(path: Path) -> list[str]:

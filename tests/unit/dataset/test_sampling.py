@@ -11,7 +11,7 @@ from sweeps import TEXT, sweep_file
 
 from tactsim.dataset.running.computing import computed
 from tactsim.dataset.sampling.drawing import design_point, drawn_specimen
-from tactsim.dataset.sampling.layout import first_case, layout_of
+from tactsim.dataset.sampling.layout import first_case, layout_of, split_of
 from tactsim.dataset.sampling.suitable import check_suitable
 from tactsim.dataset.sampling.sweep import Sweep, load_sweep, sweep_of_text
 from tactsim.dataset.store.blocks import decoded
@@ -323,3 +323,17 @@ def test_more_samples_than_a_data_set_may_have_are_refused_before_it_is_made(tmp
     with pytest.raises(CaseError, match=r"sweep\.samples: 10000001 asked for; allowed: up to 10000000"):
         sweep_of(tmp_path, samples=10_000_001)
     assert sweep_of(tmp_path, samples=10_000_000).samples == 10_000_000
+
+
+def test_shares_of_tenths_are_exact_in_every_ten_specimens() -> None:
+    sweep = load_sweep("sweep_closed_form", ("sweep.splits={train: 0.7, validation: 0.2}",), 200)
+    dealt = np.array([split_of(sweep, specimen, [], {}) for specimen in range(200)]).reshape(-1, 10)
+    for part, wanted in enumerate((7, 2, 1)):
+        np.testing.assert_array_equal((dealt == part).sum(axis=1), wanted)
+    assert len({tuple(ten) for ten in dealt}) > 15, "in an order of its own each time"
+
+
+def test_other_shares_hold_on_the_whole() -> None:
+    sweep = load_sweep("sweep_closed_form", ("sweep.splits={train: 0.64, validation: 0.13}",), 200)
+    dealt = np.array([split_of(sweep, specimen, [], {}) for specimen in range(2000)])
+    np.testing.assert_allclose([(dealt == part).mean() for part in range(3)], [0.64, 0.13, 0.23], atol=0.02)
