@@ -1,8 +1,8 @@
 """Linear systems that change little: an old factor preconditions the next systems until it no longer pays.
 
-Factoring a sparse matrix of tissue in 3D costs as much as some twenty solutions with the factor. GMRES needs fewer than
-that while the tangent is near to the factored one. It is the flexible one, so that a factor in single precision will do. A factor
-is replaced once the solutions with it have cost as much as a new one: at worst twice what the best moments would cost.
+Factoring a sparse matrix of tissue in 3D costs as much as 20 to 70 solutions with the factor, more the larger it is. GMRES needs
+fewer than that while the tangent is near to the factored one. It is the flexible one, so that a factor in single precision does.
+A factor is replaced once the solutions with it have cost as much as a new one: at worst twice what the best moments would cost.
 
 Source: Saad 1993, doi:10.1137/0914028 (flexible GMRES); Karlin et al. 1988, doi:10.1007/BF01762111 (whether to rent or to buy).
 """
