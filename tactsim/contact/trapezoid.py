@@ -11,7 +11,7 @@ from pydantic import Field, model_validator
 from tactsim.array import Array
 from tactsim.contact.profile import Revolved
 from tactsim.interfaces.contact_shape import ContactShape
-from tactsim.units import Angle, Length, NonNegative, Positive, format_quantity, parse_quantity
+from tactsim.units import Angle, Length, NonNegative, Positive, format_quantity
 
 
 class Trapezoid(Revolved):
@@ -26,8 +26,8 @@ class Trapezoid(Revolved):
     kind: Literal["trapezoid"] = "trapezoid"
     face: Positive[Length] = 2e-3
     """Width of the face between the corners where face and sides would meet without a fillet."""
-    lean: Annotated[Angle, Field(ge=0, le=math.radians(80))] = parse_quantity("20 deg", "rad")
-    """Angle of each side to the axis of the probe."""
+    lean: Annotated[Angle, Field(ge=0, le=math.radians(80))] = 0.349065850398866
+    """Angle of each side to the axis of the probe; the default is 20 degrees, as a file's "20 deg" is read."""
     fillet: NonNegative[Length] = 0.5e-3
     """Radius of the rounding of the corners; 0 is sharp."""
     height: Positive[Length] = 20e-3
