@@ -51,8 +51,11 @@ class Counting(IterativeSolver):
     name = "counting"
 
     def __init__(self, body: Body, *, factor: bool = False):
-        guide = QuasiDefinitePardiso(giving_way(body))
-        self._solver = factored(guide, analysed(guide, body)) if factor else Relay(BlockPreconditioned(body))
+        if factor:
+            guide = QuasiDefinitePardiso(giving_way(body))
+            self._solver = factored(guide, analysed(guide, body))
+        else:
+            self._solver = Relay(BlockPreconditioned(body))
         self._begin = 0.0
         self.iterations: list[int] = []
         self.accuracies: list[float] = []

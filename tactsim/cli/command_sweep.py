@@ -134,8 +134,7 @@ def _progress(arguments: argparse.Namespace) -> Callable[[Tally], None]:
 
 def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> int:
     from tactsim.dataset.store.arrays import FAILED
-    from tactsim.dataset.use.card import empty_split_lines, never_drawn_lines
-    from tactsim.dataset.use.counts import split_counts
+    from tactsim.dataset.use.card import absent_lines
 
     failed = int((going.store.read("status") == FAILED).sum())
     if not arguments.quiet:
@@ -144,8 +143,7 @@ def _finish(going: SweepRun, arguments: argparse.Namespace, stopped: bool) -> in
         if left := len(going.store.pending()):
             console.out(f"{left} samples are left; go on with: {_resuming(arguments)}")
         else:
-            empty = empty_split_lines(split_counts(going.store), going.sweep.settings.splits)
-            for line in (*never_drawn_lines(going.store, going.sweep), *empty):
+            for line in absent_lines(going.store, going.sweep):
                 console.note(line)
         console.out(f"data set {arguments.out}; check it with: {console.command('data', 'check', arguments.out)}")
     if stopped:

@@ -114,6 +114,12 @@ def readout_words(samples: JudgedSamples) -> str:
     )
 
 
+def warning_words(samples: JudgedSamples, seen: int) -> list[str]:
+    """What a reader must know before using the numbers; empty if there is nothing."""
+    given = (shared_words(samples), readout_words(samples), seen_words(seen, samples))
+    return [words for words in given if words]
+
+
 def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str], seen: int = 0) -> str:
     """The table in Markdown; ``seen`` samples were those of the training."""
     lumps = sum(truth.present for truth in samples.truths)
@@ -125,8 +131,7 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
         f"In brackets the {INTERVAL:.0%} interval, of rates by Wilson, of all else by the bootstrap. Depths are those of "
         "the centre below the upper face; inclusion_depth in the data set is that of the highest point.",
         "",
-        *(line for words in (shared_words(samples), readout_words(samples)) if words for line in (words, "")),
-        *([seen_words(seen, samples), ""] if seen else []),
+        *(line for words in warning_words(samples, seen) for line in (words, "")),
         *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),
         "",
     ]
@@ -150,8 +155,7 @@ def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples, seen: int = 0) 
     for one in ranked:
         rows.append([one.name, *(_cell(one.measures, place, unit).partition(" ")[0] for _, place, unit in BRIEF)])
     ratios = [f"{name}: median errors over those of {BASELINE}: {_ratios(one)}" for name, one in against_baseline(ranked).items()]
-    given = (BRIEFLY, *ratios, shared_words(samples), readout_words(samples), seen_words(seen, samples))
-    words = [line for text in given for line in wrap(text, SCREEN)]
+    words = [line for given in (BRIEFLY, *ratios, *warning_words(samples, seen)) for line in wrap(given, SCREEN)]
     return "\n".join([*wrap(counts + noise_in_words(samples.noise), SCREEN), "", *aligned(rows), "", *words])
 
 

@@ -80,8 +80,7 @@ def sweep(
     KeyboardInterrupt
         If it is interrupted; the message says what is kept and how to go on.
     """
-    from tactsim.dataset.use.card import empty_split_lines, never_drawn_lines
-    from tactsim.dataset.use.counts import split_counts
+    from tactsim.dataset.use.card import absent_lines
     from tactsim.dataset.use.loading import load
 
     asked = _sweep_of(variation, title, settings | ({} if samples is None else {"samples": samples}))
@@ -96,8 +95,7 @@ def sweep(
         interrupted = compute(run, executor, lambda tally: shown(tally.before + tally.done + tally.failed))
         troubles += finish(run)
         if not (left := len(run.store.pending())):
-            lines = [*never_drawn_lines(run.store, asked), *empty_split_lines(split_counts(run.store), asked.settings.splits)]
-            troubles += [line.removeprefix("warning: ") for line in lines]
+            troubles += [line.removeprefix("warning: ") for line in absent_lines(run.store, asked)]
     for trouble in dict.fromkeys(troubles):
         warnings.warn(trouble, stacklevel=2)
     if interrupted:

@@ -123,6 +123,11 @@ def _counts(store: Store, sweep: Sweep) -> list[str]:
     return lines + (_table("Warnings of samples that are done", ("warning", "samples"), warned) if warned else [])
 
 
+def absent_lines(store: Store, sweep: Sweep) -> list[str]:
+    """What a data set lacks although every sample was computed: options that none has, and parts that are empty."""
+    return [*never_drawn_lines(store, sweep), *empty_split_lines(split_counts(store), sweep.settings.splits)]
+
+
 def never_drawn_lines(store: Store, sweep: Sweep) -> list[str]:
     """A sentence on each option that no sample has because its cases were refused."""
     return [

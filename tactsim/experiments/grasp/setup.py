@@ -196,8 +196,9 @@ class GraspSetup(FrozenModel):
     def _embedded(self) -> Self:
         size = np.array(self.block.size)
         try:
-            for source in (self.mesh, self.source):  # a body that is too near for any mesh is told what the first of them needs
-                check_inclusions(size, self.shapes, source.least_gap(self.block.size))
+            gaps = {source.least_gap(self.block.size) for source in (self.mesh, self.source)}
+            for gap in sorted(gaps):  # a body that is too near for any mesh is told the least that one needs
+                check_inclusions(size, self.shapes, gap)
         except InvalidQuantity as error:
             names = [f"{inclusion_name(number, shape)} " for number, shape in enumerate(self.shapes, 1)]
             blamed = [f"inclusions.{k}.shape: " for k, name in enumerate(names) if str(error).startswith(name)]
