@@ -111,6 +111,24 @@ def test_a_quantity_is_one_type_for_numbers_and_arrays(result: ts.Result) -> Non
     assert readings["taxel_force_upper"].array.attrs["units"] == "N"
 
 
+def test_operators_and_elementwise_functions_of_quantities_give_the_units_that_follow() -> None:
+    forces, closing = ts.Quantity([0.2, 0.4], "N", "forces"), ts.Quantity(2.0, "mm", "closing")
+    registry = pint.get_application_registry()
+    for computed, numbers, unit in (
+        (forces / closing, [100.0, 200.0], "N/m"),
+        (np.array([1, 2]) * forces, [0.2, 0.8], "N"),
+        (3 * closing - 1 * registry.mm, 5e-3, "m"),
+        (np.sqrt(closing * closing), 2e-3, "m"),
+        (-abs(-forces), [-0.2, -0.4], "N"),
+        (2 * ts.Quantity(0.25, "1", "share"), 0.5, ""),
+    ):
+        assert computed.m_as(unit) == pytest.approx(np.array(numbers), rel=1e-15)
+    assert (forces > 0.3 * registry.N).tolist() == [False, True]
+    assert (float(np.sum(forces)), np.max(forces), np.stack([forces, forces]).shape) == (pytest.approx(0.6), 0.4, (2, 2))
+    with pytest.raises(pint.DimensionalityError):
+        _ = forces + closing
+
+
 @pytest.mark.parametrize(
     ("name", "shape", "words", "axes"),
     [

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
@@ -14,6 +15,7 @@ from tactsim.unit_conversion import compact
 from tactsim.units import conversion, format_quantity
 
 if TYPE_CHECKING:
+    import pint
     import xarray
 
 LISTED = 4
@@ -34,8 +36,11 @@ class Coordinate:
 
 
 @dataclass(frozen=True)
-class Quantity:
+class Quantity(NDArrayOperatorsMixin):
     """A number or an array with its unit; in SI where tactsim made it.
+
+    Operators and numpy's elementwise functions give quantities of pint, with the units that follow; whatever else reads it as an
+    array, a sum or a plot, sees plain numbers in ``unit``.
 
     >>> import tactsim as ts
     >>> forces = ts.Quantity([0.2, 0.3], "N", "forces of two taxels")
@@ -43,6 +48,8 @@ class Quantity:
     [200.0, 300.0]
     >>> forces.array.attrs["units"]
     'N'
+    >>> print(forces / ts.Quantity(2.0, "mm", "closing"))
+    [0.1 0.15] newton / millimeter
 
     Attributes
     ----------
@@ -77,6 +84,18 @@ class Quantity:
             for name, one in self.coordinates.items()
         }
         return xarray.DataArray(self.numbers, along, self.dims or None, attrs=attributes)
+
+    @property
+    def pint(self) -> pint.Quantity[Any]:
+        """The value as a quantity of pint's application registry, which computes with units."""
+        import pint
+
+        return pint.get_application_registry().Quantity(self.numbers[()], "" if self.unit == "1" else self.unit)
+
+    def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
+        elementwise = method == "__call__"
+        operands = [(one.pint if elementwise else one.numbers) if isinstance(one, Quantity) else one for one in inputs]
+        return getattr(ufunc, method)(*operands, **options)
 
     def to(self, unit: str) -> Quantity:
         """The same quantity in another unit.
