@@ -48,6 +48,13 @@ def _all_units() -> Any:
     return pint.UnitRegistry(cache_folder=None)
 
 
+def in_pint(value: Any, unit: str) -> Any:
+    """A quantity of pint's application registry, in which a user's own quantities are."""
+    import pint
+
+    return pint.get_application_registry().Quantity(value, "" if unit == "1" else unit)
+
+
 @lru_cache(maxsize=1024)
 def factor_to(unit: str, given_unit: str) -> float:
     """How many ``unit`` one ``given_unit`` is.

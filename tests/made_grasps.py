@@ -130,7 +130,8 @@ def made_forces(grasps: tuple[Truth, ...], table: LumpResponse, contrast: float 
 def made_samples(count: int, table: LumpResponse, *, noise: float = NOISE, seed: int = 1) -> JudgedSamples:
     """Samples to be judged, without a store."""
     grasps = truths(count, seed)
-    return JudgedSamples(grasps, made_forces(grasps, table), np.ones(count), None, plain_grasp(), "taxel_force", noise)  # type: ignore[arg-type]
+    stated = np.full(count, noise)
+    return JudgedSamples(grasps, made_forces(grasps, table), plain_grasp(), "taxel_force", stated, np.zeros(count))
 
 
 def plain_result(folder: Path, closings: np.ndarray = CLOSINGS, layout: TaxelLayout = LAYOUT, size: np.ndarray = SIZE) -> str:
@@ -183,6 +184,7 @@ def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: boo
         "time_s": np.ones((40, 1)),
         "taxel_force": forces[:, None],
         "split": np.where(np.arange(40) < training, 0, 2),
+        "specimen": np.arange(40) // store.attributes["samples_per_specimen"],
         "status": np.full(40, DONE),
     }
     if "read_force" in store.described:

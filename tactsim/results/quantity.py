@@ -11,11 +11,10 @@ from numpy.lib.mixins import NDArrayOperatorsMixin
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.unit_conversion import compact
+from tactsim.unit_conversion import compact, in_pint
 from tactsim.units import conversion, format_quantity
 
 if TYPE_CHECKING:
-    import pint
     import xarray
 
 LISTED = 4
@@ -86,11 +85,9 @@ class Quantity(NDArrayOperatorsMixin):
         return xarray.DataArray(self.numbers, along, self.dims or None, attrs=attributes)
 
     @property
-    def pint(self) -> pint.Quantity[Any]:
+    def pint(self) -> Any:
         """The value as a quantity of pint's application registry, which computes with units."""
-        import pint
-
-        return pint.get_application_registry().Quantity(self.numbers[()], "" if self.unit == "1" else self.unit)
+        return in_pint(self.numbers[()], self.unit)
 
     def __array_ufunc__(self, ufunc: np.ufunc, method: str, *inputs: Any, **options: Any) -> Any:
         elementwise = method == "__call__"

@@ -3,16 +3,17 @@
 from __future__ import annotations
 
 import itertools
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from itertools import pairwise
+from operator import attrgetter
 from typing import Any
 
 import numpy as np
-import scipy
 
 from tactsim.array import Array
+from tactsim.dataset.ranking.intervals import Given, interval, share, spread
 from tactsim.dataset.ranking.samples import JudgedSamples, Truth
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
@@ -23,16 +24,10 @@ from tactsim.progress import count_bar
 
 NOISES = (1.0, 2.0, 4.0)
 """Noise of a reading over the stated one."""
-DRAWN = 1000
-"""Bootstrap samples of an interval."""
-INTERVAL = 0.95
-"""Probability of an interval."""
 BINS = 4
 """Parts into which a label is divided, with equally many lumps each."""
 LABELS = {"depth": "m", "radius": "m", "contrast": "1", "closing": "m"}
 """Labels of the truth over which everything is binned, with units."""
-Statistic = Callable[..., Any]
-"""Of values along the ``axis`` that it is given."""
 
 
 @dataclass(frozen=True)
@@ -102,25 +97,33 @@ def measures(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, A
     """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score.
 
     Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
-    by the bootstrap over the samples; None where no sample has any.
+    by the bootstrap, over the specimens; None where no sample has any.
     """
     lumps = [one for one in judged if one.truth.present]
     plain = [one for one in judged if not one.truth.present]
     hits = [one for one in lumps if one.found]
-    covered = [one.covered for one in hits if one.covered is not None]
+
+    def each(value: Callable[[JudgedEstimate], float | None], of: Sequence[JudgedEstimate] = hits) -> list[Given]:
+        return [(one.truth.group, value(one)) for one in of]
+
     by_name: dict[str, Any] = {"samples": len(judged), "lumps": len(lumps), "without_lump": len(plain), "found": len(hits)}
-    by_name["detection_rate"] = share([one.found for one in lumps])
-    by_name["false_alarm_rate"] = share([one.found for one in plain])
-    by_name["score"] = interval([penalty(one, block_size) for one in judged], np.mean)
+    by_name["detection_rate"] = share(each(attrgetter("found"), lumps))
+    by_name["false_alarm_rate"] = share(each(attrgetter("found"), plain))
+    by_name["score"] = interval(each(partial(penalty, block_size=block_size), judged), np.mean)
     for name in ("lateral", "depth", "radius"):
-        errors = [abs(float(value)) for one in hits if (value := getattr(one, name)) is not None]
-        by_name[f"{name}_error"] = spread(errors)
+        by_name[f"{name}_error"] = spread(each(partial(_size_of, name=name)))
         by_name[f"{name}_error_with_misses"] = _with_misses(lumps, name, block_size)
-    by_name["depth_bias"] = interval([float(one.depth) for one in hits if one.depth is not None], np.median)
-    by_name["coverage"] = share(covered)
-    by_name["region_width"] = interval([one.width for one in hits if one.width is not None], np.median)
-    by_name["region_height"] = interval([one.height for one in hits if one.height is not None], np.median)
+    by_name["depth_bias"] = interval(each(attrgetter("depth")), np.median)
+    by_name["coverage"] = share(each(attrgetter("covered")))
+    by_name["region_width"] = interval(each(attrgetter("width")), np.median)
+    by_name["region_height"] = interval(each(attrgetter("height")), np.median)
     return by_name
+
+
+def _size_of(one: JudgedEstimate, name: str) -> float | None:
+    """Size in m of an error, None where there is none."""
+    error = getattr(one, name)
+    return None if error is None else abs(float(error))
 
 
 def penalty(one: JudgedEstimate, block_size: Array) -> float:
@@ -140,35 +143,8 @@ def _with_misses(lumps: Sequence[JudgedEstimate], name: str, block_size: Array) 
     if name == "radius":
         return None
     most = float(np.min(block_size[:2]) / 2 if name == "lateral" else block_size[2] / 2)
-    errors = [abs(float(value)) if (value := getattr(one, name)) is not None else most for one in lumps]
-    return interval(errors, np.median)
-
-
-def spread(values: Sequence[float]) -> dict[str, Any] | None:
-    """Median, 90 % quantile and mean, each with its interval; None without values."""
-    if not values:
-        return None
-    named: dict[str, Statistic] = {"median": np.median, "quantile_90": partial(np.quantile, q=0.9), "mean": np.mean}
-    return {name: interval(values, statistic) for name, statistic in named.items()}
-
-
-def interval(values: Iterable[float | None], statistic: Statistic) -> dict[str, float] | None:
-    """Value of a statistic with its 95 % interval by the percentile bootstrap, seeded; None without values."""
-    given = np.asarray(list(values), dtype=float)
-    if not given.size:
-        return None
-    drawn = given[np.random.default_rng(1).integers(given.size, size=(DRAWN, given.size))]
-    low, high = np.quantile(statistic(drawn, axis=1), [(1 - INTERVAL) / 2, (1 + INTERVAL) / 2])
-    return {"value": float(statistic(given, axis=0)), "low": float(low), "high": float(high)}
-
-
-def share(given: Sequence[bool]) -> dict[str, float] | None:
-    """Part of the true ones with its 95 % interval (E. B. Wilson 1927, doi:10.1080/01621459.1927.10502953), which has a width at
-    0 and 1 too; None without values."""
-    if not given:
-        return None
-    low, high = scipy.stats.binomtest(sum(map(bool, given)), len(given)).proportion_ci(INTERVAL, method="wilson")
-    return {"value": float(np.mean(given)), "low": float(low), "high": float(high)}
+    errors = ((one.truth.group, _size_of(one, name)) for one in lumps)
+    return interval(((group, most if size is None else size) for group, size in errors), np.median)
 
 
 def binned(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, list[dict[str, Any]]]:

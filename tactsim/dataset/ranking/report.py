@@ -6,10 +6,14 @@ from collections.abc import Mapping, Sequence
 from textwrap import wrap
 from typing import Any
 
-from tactsim.dataset.ranking.measures import DRAWN, INTERVAL, LABELS, Ranked
+import numpy as np
+
+from tactsim.dataset.ranking.intervals import DRAWN, INTERVAL
+from tactsim.dataset.ranking.measures import LABELS, Ranked
 from tactsim.dataset.ranking.samples import JudgedSamples
 from tactsim.interfaces.readings import noise_in_words
 from tactsim.outside.text import aligned, markdown_table
+from tactsim.units import format_quantity
 
 SCHEMA = "tactsim/ranking/1"
 SCORE = (
@@ -51,16 +55,17 @@ BINNED = (COLUMNS[1], COLUMNS[3], COLUMNS[5], COLUMNS[7], COLUMNS[8])
 
 
 def record(ranked: Sequence[Ranked], samples: JudgedSamples, about: Mapping[str, Any]) -> dict[str, Any]:
-    """All numbers of a ranking, in SI; ``about`` describes the run: store, split, seed."""
+    """All numbers of a ranking, in SI; ``about`` describes the run: store, split, seed. The noise is the median and the range."""
+    low, high = float(samples.noise.min()), float(samples.noise.max())
     return {
         "schema": SCHEMA,
         **about,
         "score": SCORE,
         "readings": samples.source,
-        "noise": {"value": samples.noise, "unit": "N"},
+        "noise": {"value": float(np.median(samples.noise)), "low": low, "high": high, "unit": "N"},
         "block_size": {"value": samples.block_size.tolist(), "unit": "m"},
         "samples": len(samples.truths),
-        "specimens": len(samples.truths) if samples.specimens is None else samples.specimens,
+        "specimens": _specimens(samples),
         "interval": {"probability": INTERVAL, "rates": "Wilson", "bootstrap_samples": DRAWN},
         "labels": LABELS,
         "estimators": [one.record() for one in ranked],
@@ -93,31 +98,21 @@ def seen_words(seen: int, samples: JudgedSamples) -> str:
     )
 
 
-def shared_words(samples: JudgedSamples) -> str:
-    """What a reader must know of the intervals if grasps share their specimens; empty if none does."""
-    count = len(samples.truths)
-    if samples.specimens is None or samples.specimens == count:
-        return ""
-    return (
-        f"Warning: the {count} grasps are of {samples.specimens} specimens, but intervals take each grasp as another one: grasps "
-        f"of one lump err alike, so that intervals may be {(count / samples.specimens) ** 0.5:.2g} times as wide."
-    )
+def _counted(samples: JudgedSamples) -> str:
+    """How many grasps there are, and of how many specimens if they share some."""
+    count, specimens = len(samples.truths), _specimens(samples)
+    return f"{count} grasps" if specimens == count else f"{count} grasps of {specimens} specimens"
 
 
-def readout_words(samples: JudgedSamples) -> str:
-    """What a reader must know if the sensors are not the same in all grasps; empty if they are."""
-    if not samples.varied_readout:
-        return ""
-    return (
-        f"Warning: {', '.join(samples.varied_readout)} varies, but every grasp is judged with noise and references as the "
-        "readout of the first sample gives them; regions are too wide or too narrow for the others."
-    )
+def _specimens(samples: JudgedSamples) -> int:
+    return len({truth.group for truth in samples.truths})
 
 
-def warning_words(samples: JudgedSamples, seen: int) -> list[str]:
-    """What a reader must know before using the numbers; empty if there is nothing."""
-    given = (shared_words(samples), readout_words(samples), seen_words(seen, samples))
-    return [words for words in given if words]
+def _noise_words(samples: JudgedSamples) -> str:
+    """The noise of a reading, or its range if sensors vary."""
+    low, high = float(samples.noise.min()), float(samples.noise.max())
+    same = np.isclose(low, high, rtol=1e-9)
+    return noise_in_words(low) if same else f"{format_quantity(low, 'N')} to {format_quantity(high, 'N')}"
 
 
 def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str], seen: int = 0) -> str:
@@ -126,12 +121,12 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
     lines = [
         "# Ranking of estimators",
         "",
-        f"{len(samples.truths)} grasps, {lumps} with a lump, {len(samples.truths) - lumps} without; readings {samples.source}, "
-        f"noise of a reading {noise_in_words(samples.noise)}. {SCORE}",
-        f"In brackets the {INTERVAL:.0%} interval, of rates by Wilson, of all else by the bootstrap. Depths are those of "
-        "the centre below the upper face; inclusion_depth in the data set is that of the highest point.",
+        f"{_counted(samples)}, {lumps} with a lump, {len(samples.truths) - lumps} without; readings {samples.source}, "
+        f"noise of a reading {_noise_words(samples)}. {SCORE}",
+        f"In brackets the {INTERVAL:.0%} interval over specimens, of rates by Wilson, of all else by the bootstrap. Depths are "
+        "those of the centre below the upper face; inclusion_depth in the data set is that of the highest point.",
         "",
-        *(line for words in warning_words(samples, seen) for line in (words, "")),
+        *((words, "") if (words := seen_words(seen, samples)) else ()),
         *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),
         "",
     ]
@@ -150,13 +145,13 @@ def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples, seen: int = 0) 
     samples were those of the training.
     """
     lumps = sum(truth.present for truth in samples.truths)
-    counts = f"{len(samples.truths)} grasps, {lumps} with a lump; readings {samples.source}, noise of a reading "
+    counts = f"{_counted(samples)}, {lumps} with a lump; readings {samples.source}, noise of a reading {_noise_words(samples)}"
     rows = [["estimator", *(heading for heading, _, _ in BRIEF)]]
     for one in ranked:
         rows.append([one.name, *(_cell(one.measures, place, unit).partition(" ")[0] for _, place, unit in BRIEF)])
     ratios = [f"{name}: median errors over those of {BASELINE}: {_ratios(one)}" for name, one in against_baseline(ranked).items()]
-    words = [line for given in (BRIEFLY, *ratios, *warning_words(samples, seen)) for line in wrap(given, SCREEN)]
-    return "\n".join([*wrap(counts + noise_in_words(samples.noise), SCREEN), "", *aligned(rows), "", *words])
+    words = [line for given in (BRIEFLY, *ratios, seen_words(seen, samples)) for line in wrap(given, SCREEN)]
+    return "\n".join([*wrap(counts, SCREEN), "", *aligned(rows), "", *words])
 
 
 def _ratios(ratios: Mapping[str, float]) -> str:

@@ -12,7 +12,8 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.dataset.ranking.reference import PlainGrasp, check_same
-from tactsim.dataset.sampling.drawing import drawn_specimen
+from tactsim.dataset.ranking.sensing import Sensing, noises
+from tactsim.dataset.sampling.drawing import drawn_specimen, stored_cases
 from tactsim.dataset.sampling.layout import TRIED_SPECIMENS
 from tactsim.dataset.sampling.stored import UNUSABLE, stored_sweep
 from tactsim.dataset.store.opening import Store
@@ -22,9 +23,9 @@ from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, Source
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.localization.source import SAME_CLOSING
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
+from tactsim.interfaces.seeds import SEED
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.outside.text import one_line
-from tactsim.sensors.matrix_readout import MatrixReadout
 from tactsim.units import format_quantity
 
 if TYPE_CHECKING:
@@ -34,8 +35,8 @@ SPHERE = 1
 """Number of a ball among the kinds of inclusions of a store."""
 LEAST_NOISE = 1e-9
 """Of a reading over the largest: below it is round-off."""
-REPEATED = 16
-"""Readings of the same forces from which the noise of a sensor is estimated."""
+SENSED = (("readout",), ("time",))
+"""Parts of a grasp that say how it was read."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +52,13 @@ class Truth:
     radius: float | None = None
     depth: float | None = None
     contrast: float | None = None
+    specimen: int | None = None
+    """Number of the specimen, which samples may share; None if it has its own."""
+
+    @property
+    def group(self) -> int:
+        """The same number for samples of one specimen."""
+        return self.sample if self.specimen is None else self.specimen
 
     @property
     def present(self) -> bool:
@@ -65,21 +73,16 @@ class JudgedSamples:
     truths: tuple[Truth, ...]
     forces: Array
     """(n, jaw, row, column) in N: as the solution has them, or as read."""
-    durations: Array
-    """(n,) in s, from first touch to the reading."""
-    experiment: Grasp
     plain: PlainGrasp
     source: Source
-    noise: float
-    """Standard deviation in N of a reading, as stated."""
-    own_noise: float = 0.0
-    """That of the forces as they are; the rest is added."""
+    noise: Array
+    """Standard deviation (n,) in N of a reading of each, as stated."""
+    own_noise: Array
+    """That of the forces as they are (n,); the rest is added."""
+    sensing: tuple[Sensing, ...] = ()
+    """How each was read; empty for the forces of the solution."""
     cases: tuple[str, ...] = ()
     """Hash of the case of each sample, as the store has it."""
-    specimens: int | None = None
-    """Number of specimens that the samples are of; None where each has its own."""
-    varied_readout: tuple[str, ...] = ()
-    """Key paths of the readout that vary: noise and references are those of the readout of the first sample."""
 
     @property
     def block_size(self) -> Array:
@@ -89,36 +92,30 @@ class JudgedSamples:
     @cached_property
     def references(self) -> Array:
         """What the plain tissue reads (n, jaw, row, column) at each sample's closing, in N; read with noise like the samples."""
-        closings = np.array([truth.closing for truth in self.truths])
-        if self.source == TAXEL_FORCE:
-            return self.plain.at(closings)
-        readout = _readout(self.experiment)
-        steps, area = self.experiment.time.steps, self.experiment.matrix.area
-        return np.stack(
-            [
-                _read(self.plain, readout, area, closing=c, duration=t, steps=steps, seed=truth.sample)
-                for c, t, truth in zip(closings, self.durations, self.truths, strict=True)
-            ]
-        )
-
-    def added(self, multiple: Array | float) -> Array:
-        """Standard deviation in N of the noise that makes the noise of forces and references a ``multiple`` of the stated one."""
-        return np.sqrt(np.maximum(0.0, (np.asarray(multiple) * self.noise) ** 2 - self.own_noise**2))
+        if not self.sensing:
+            return self.plain.at(np.array([truth.closing for truth in self.truths]))
+        both = zip(self.sensing, self.truths, strict=True)
+        return np.stack([sensing.read(self.plain, truth.closing, truth.sample) for sensing, truth in both])
 
     def readings(self, response: LumpResponse | None = None, *, multiple: float = 1.0, seed: int = 1) -> Iterator[Readings]:
         """Readings of each sample with reference; noise is added until it is ``multiple`` times the stated one, by the seed."""
-        added = float(self.added(multiple))
-        for truth, forces, reference in zip(self.truths, self.forces, self.references, strict=True):
+        added = added_noise(self.noise, self.own_noise, multiple)
+        for k, (truth, forces, reference) in enumerate(zip(self.truths, self.forces, self.references, strict=True)):
             generator = np.random.default_rng([seed, truth.sample, round(1000 * multiple)])
-            noise = added * generator.standard_normal((2, *forces.shape))
+            noise = added[k] * generator.standard_normal((2, *forces.shape))
             yield replace(
                 self.plain.readings,
                 forces=forces + noise[0],
                 reference=reference + noise[1],
-                noise=multiple * self.noise,
+                noise=multiple * float(self.noise[k]),
                 closing=truth.closing,
                 response=response,
             )
+
+
+def added_noise(stated: Array, own: Array, multiple: Array | float) -> Array:
+    """Standard deviations (n,) in N of the noise that makes that of forces and references a ``multiple`` of the stated one."""
+    return np.sqrt(np.maximum(0.0, (multiple * stated) ** 2 - own**2))
 
 
 def judged_samples(
@@ -131,7 +128,7 @@ def judged_samples(
 ) -> JudgedSamples:
     """The samples of a store, or of one of its parts, that estimators can be judged on.
 
-    ``noise`` in N is added to what they read. ``read_force`` also has that of the store's own electronics, estimated by repeated
+    ``noise`` in N is added to what they read. ``read_force`` has that of each sample's own electronics too, estimated by repeated
     readings of the reference; for ``taxel_force`` the default is what rounding to 0.1 N does (thesis 6.2).
 
     Raises
@@ -150,25 +147,27 @@ def judged_samples(
     forces = np.asarray(data[source].values[:, -1], dtype=float)
     truths = _truths(data, float(experiment.block.size[2]))
     plain.at(np.array([truth.closing for truth in truths]))
-    durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
-    electronic = _read_noise(plain, experiment, float(durations.max())) if source == READ_FORCE else 0.0
-    if noise is None and source == READ_FORCE and electronic < LEAST_NOISE * float(np.abs(forces).max()):
+    sensing = _sensing(store, data, experiment) if source == READ_FORCE else ()
+    electronic = noises(sensing, plain) if sensing else np.zeros(len(truths))
+    if noise is None and sensing and (electronic < LEAST_NOISE * np.abs(forces).max()).any():
         raise InputError(
             f"{Path(store).name} was read without noise, from which no estimator can tell a lump that is felt; give that of the "
             "sensors, such as --noise '1 mN' (in Python: noise=1e-3)"
         )
-    given = noise if noise is not None else 0.0 if source == READ_FORCE else ROUNDING_NOISE
-    stated = float(np.hypot(electronic, given))
+    given = noise if noise is not None else 0.0 if sensing else ROUNDING_NOISE
     cases = tuple(map(str, data["case_id"].values))
-    specimens = len(np.unique(data["specimen"].values))
-    varied = _varied_readout(data) if source == READ_FORCE else ()
-    return JudgedSamples(truths, forces, durations, experiment, plain, source, stated, electronic, cases, specimens, varied)
+    return JudgedSamples(truths, forces, plain, source, np.hypot(electronic, given), electronic, sensing, cases)
 
 
-def _varied_readout(data: xarray.Dataset) -> tuple[str, ...]:
-    """Key paths of what varies in the readout, but for seeds."""
-    names = [str(name) for name in data if str(name).startswith("varied_readout")]
-    return tuple(str(data[name].attrs["long_name"]) for name in names if not name.endswith("_seed"))
+def _sensing(store: str | Path, data: xarray.Dataset, experiment: Grasp) -> tuple[Sensing, ...]:
+    """How each sample was read: as the ``experiment`` of one, or by its own case where sensors or steps vary."""
+    sweep = stored_sweep(Store.open(store))
+    grasps = [experiment] * data.sizes["sample"]
+    if any(place.path[1:2] in SENSED and place.path[-1] != SEED for place in sweep.places):
+        cases = stored_cases(sweep, data["sample"].values, data["case_id"].values, Path(store).name)
+        grasps = [case.experiment for case in cases]  # type: ignore[misc]  # of one kind, as the first one is
+    durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
+    return tuple(Sensing.of(grasp, float(duration)) for grasp, duration in zip(grasps, durations, strict=True))
 
 
 def stored_experiment(store: str | Path) -> Grasp:
@@ -238,35 +237,9 @@ def _truths(data: xarray.Dataset, height: float) -> tuple[Truth, ...]:
     contrast, numbers = data["inclusion_contrast"].values[:, 0], data["sample"].values
     truths = []
     for k, number in enumerate(numbers):
-        if not count[k]:
-            truths.append(Truth(int(number), float(closing[k])))
-            continue
-        x, y, z = map(float, center[k])
-        truths.append(Truth(int(number), float(closing[k]), (x, y, z), float(radius[k]), height - z, float(contrast[k])))
+        truth = Truth(int(number), float(closing[k]), specimen=int(data["specimen"].values[k]))
+        if count[k]:
+            x, y, z = map(float, center[k])
+            truth = replace(truth, center=(x, y, z), radius=float(radius[k]), depth=height - z, contrast=float(contrast[k]))
+        truths.append(truth)
     return tuple(truths)
-
-
-def _readout(experiment: Grasp) -> MatrixReadout:
-    pieces = experiment.loading.pieces
-    if experiment.readout is None or len(pieces) != 1 or pieces[0].kind != "ramp":
-        raise InputError(f"read forces need grasps with a readout that close in one ramp; give --readings {TAXEL_FORCE}")
-    return experiment.readout
-
-
-def _read(
-    plain: PlainGrasp, readout: MatrixReadout, area: float, *, closing: float, duration: float, steps: int, seed: int
-) -> Array:
-    """What the sensors read (jaw, row, column) at the end of a ramp on plain tissue, solved in the same steps as the samples."""
-    part = np.arange(1, steps + 1) / steps
-    seeded = readout.model_copy(update={"seed": seed})
-    return np.asarray(seeded.read(part * duration, plain.at(part * closing), area).force[-1])
-
-
-def _read_noise(plain: PlainGrasp, experiment: Grasp, duration: float) -> float:
-    """Root mean square over the taxels of the standard deviation of repeated readings in N."""
-    readout, area = _readout(experiment), experiment.matrix.area
-    closing, steps = float(plain.closings[-1]), experiment.time.steps
-    repeated = [
-        _read(plain, readout, area, closing=closing, duration=duration, steps=steps, seed=seed) for seed in range(REPEATED)
-    ]
-    return float(np.sqrt(np.var(repeated, axis=0, ddof=1).mean()))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from itertools import product
 from typing import Any
 
@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 
 from tactsim.array import Array
-from tactsim.dataset.ranking.samples import JudgedSamples
+from tactsim.dataset.ranking.samples import JudgedSamples, added_noise
 from tactsim.errors import InputError
 from tactsim.interfaces.estimate import LEVEL
 from tactsim.localization.candidates import BALL_RADII, gap_in, limits_in
@@ -41,21 +41,23 @@ FLOOR = 1e-6
 
 @dataclass(frozen=True, eq=False)
 class Examples:
-    """Changes and references (n, jaw, row, column) in N, and targets (n, 4) in m, NaN where there is no lump."""
+    """Changes and references (n, jaw, row, column) in N, targets (n, 4) in m, NaN where there is no lump, and the noise (n,) in N
+    of a reading: the stated one, and what of it the changes have."""
 
     changes: Array
     references: Array
     targets: Array
+    noise: Array
+    own_noise: Array
 
     def taken(self, chosen: Array) -> Examples:
         """Some of them."""
-        return Examples(self.changes[chosen], self.references[chosen], self.targets[chosen])
+        return Examples(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     @staticmethod
     def joined(parts: list[Examples]) -> Examples:
         """All of them."""
-        names = ("changes", "references", "targets")
-        return Examples(*(np.concatenate([getattr(part, name) for part in parts]) for name in names))
+        return Examples(*(np.concatenate([getattr(part, field.name) for part in parts]) for field in fields(Examples)))
 
 
 def trained(samples: JudgedSamples, response: LumpResponse | None = None, *, seed: int = 1) -> LearnedWeights:
@@ -71,23 +73,30 @@ def trained(samples: JudgedSamples, response: LumpResponse | None = None, *, see
     lumps = int(np.isfinite(examples.targets[:, 0]).sum())
     if lumps < LEAST:
         raise InputError(f"{lumps} grasps with a lump; training needs at least {LEAST}")
-    order = generator.permutation(len(examples.targets))
-    held = order[: max(4, round(HELD_OUT * len(order)))]
-    fitted = _mirrored(examples.taken(np.setdiff1d(order, held)), samples)
+    held = _held_out(samples, generator)
+    fitted = _mirrored(examples.taken(~held), samples)
     parts = [fitted] * COPIES + ([_fast(samples, response, generator)] if response is not None else [])
-    features, targets = _noisy(Examples.joined(parts), samples, generator)
+    features, targets = _noisy(Examples.joined(parts), generator)
     middle, scale = features.mean(axis=0), features.std(axis=0) + 1e-12
     places, presence = _fitted((features - middle) / scale, targets, samples.block_size, seed)
     bare = LearnedWeights(
         samples.plain.readings.layout, samples.block_size, middle, scale, places, presence, np.zeros((4, 4)), np.zeros(2)
     )
     bare = replace(bare, trained_on=samples.cases)
-    return _with_uncertainty(bare, *_noisy(_mirrored(examples.taken(held), samples), samples, generator, exact=True))
+    return _with_uncertainty(bare, *_noisy(_mirrored(examples.taken(held), samples), generator, exact=True))
+
+
+def _held_out(samples: JudgedSamples, generator: np.random.Generator) -> Array:
+    """Which samples (n,) are kept from the fit: whole specimens, for samples of one err alike."""
+    groups = np.array([truth.group for truth in samples.truths])
+    order = generator.permutation(np.unique(groups))
+    return np.isin(groups, order[: max(4, round(HELD_OUT * len(order)))])
 
 
 def _examples(samples: JudgedSamples) -> Examples:
     targets = [[np.nan] * len(OUTPUTS) if t.center is None else [*t.center, t.radius] for t in samples.truths]
-    return Examples(samples.forces - samples.references, samples.references, np.array(targets, dtype=float))
+    changes = samples.forces - samples.references
+    return Examples(changes, samples.references, np.array(targets, dtype=float), samples.noise, samples.own_noise)
 
 
 def mirror_images(size: Array, rows: int, columns: int) -> Iterator[tuple[bool, bool, bool, bool]]:
@@ -109,7 +118,7 @@ def _mirrored(examples: Examples, samples: JudgedSamples) -> Examples:
         if exchange:
             taxels = [values.swapaxes(2, 3) for values in taxels]
             targets[:, :2] = targets[:, 1::-1]
-        parts.append(Examples(taxels[0], taxels[1], targets))
+        parts.append(replace(examples, changes=taxels[0], references=taxels[1], targets=targets))
     return Examples.joined(parts)
 
 
@@ -131,18 +140,16 @@ def _fast(samples: JudgedSamples, response: LumpResponse, generator: np.random.G
     scaled = errors.background_scale * generator.standard_normal((FAST, 1, 1, 1)) * references
     changes = signals + scaled + white * generator.standard_normal(signals.shape)
     targets = np.where(contrasts[:, None] > 0, np.column_stack([centers, radii]), np.nan)
-    return Examples(changes, references, targets)
+    return Examples(changes, references, targets, np.resize(samples.noise, FAST), np.zeros(FAST))
 
 
-def _noisy(
-    examples: Examples, samples: JudgedSamples, generator: np.random.Generator, *, exact: bool = False
-) -> tuple[Array, Array]:
+def _noisy(examples: Examples, generator: np.random.Generator, *, exact: bool = False) -> tuple[Array, Array]:
     """Features and targets, with noise of a random size, or of the stated one."""
     count = len(examples.targets)
     multiples = np.ones(count) if exact else _log_uniform(NOISES, count, generator)
-    added = np.sqrt(2.0) * samples.added(multiples)
+    added = np.sqrt(2.0) * added_noise(examples.noise, examples.own_noise, multiples)
     changes = examples.changes + added[:, None, None, None] * generator.standard_normal(examples.changes.shape)
-    features = inputs(changes, examples.references, samples.noise * multiples)
+    features = inputs(changes, examples.references, examples.noise * multiples)
     return features, examples.targets
 
 

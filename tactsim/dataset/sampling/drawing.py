@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from typing import Any
@@ -17,7 +18,7 @@ from tactsim.case.model import Case
 from tactsim.case.yaml_reading import Path
 from tactsim.dataset.sampling.settings import DesignName
 from tactsim.dataset.sampling.sweep import Place, Sweep, filled, sizes_of
-from tactsim.errors import InputError
+from tactsim.errors import InputError, StorageError
 from tactsim.experiments.recording import seed_place
 from tactsim.interfaces.seeds import SEED, entries, seeds_in
 
@@ -63,6 +64,29 @@ def drawn_specimen(sweep: Sweep, specimen: int) -> list[Drawn]:
             refusal = str(error).replace("\n", "; ")
     reason = f"no case was accepted in {most + 1} draws, the last because: {refusal}"
     return [Drawn(number, specimen, None, {}, most, reason) for number in numbers]
+
+
+def stored_cases(sweep: Sweep, samples: Iterable[int], identities: Iterable[str], where: str) -> Iterator[Case]:
+    """The case of each of some samples of the store ``where``, given the identity of what was computed, empty if nothing was.
+
+    Raises
+    ------
+    InputError
+        If no draw of a sample was possible.
+    StorageError
+        If this tactsim draws another case than was computed.
+    """
+    specimen, drawn = -1, list[Drawn]()
+    for sample, identity in zip(map(int, samples), map(str, identities), strict=True):
+        if sample // sweep.per_specimen != specimen:
+            specimen = sample // sweep.per_specimen
+            drawn = drawn_specimen(sweep, specimen)
+        one = drawn[sample % sweep.per_specimen]
+        if one.case is None:
+            raise InputError(f"sample {sample}: {one.refusal}")
+        if identity not in ("", one.case.case_id):
+            raise StorageError(f"{where}: sample {sample} was computed from another case than this tactsim draws")
+        yield one.case
 
 
 def fault_of(sweep: Sweep) -> str:

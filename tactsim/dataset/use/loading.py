@@ -108,7 +108,7 @@ def sample_case(store: str | Path, sample: int) -> Case:
     StorageError
         If the folder is not a data set, or this tactsim draws another case than was computed.
     """
-    from tactsim.dataset.sampling.drawing import drawn_specimen
+    from tactsim.dataset.sampling.drawing import stored_cases
     from tactsim.dataset.sampling.stored import stored_sweep
     from tactsim.dataset.store.opening import Store
 
@@ -120,14 +120,7 @@ def sample_case(store: str | Path, sample: int) -> Case:
     if not 0 <= sample < place.samples:
         raise InputError(f"sample {sample}: {known}")
     sweep = stored_sweep(place)
-    specimen, which = divmod(sample, sweep.per_specimen)
-    drawn = drawn_specimen(sweep, specimen)[which]
-    if drawn.case is None:
-        raise InputError(f"sample {sample}: {drawn.refusal}")
-    stored = str(place.read("case_id")[sample])
-    if stored not in ("", drawn.case.case_id):
-        raise StorageError(f"{store}: sample {sample} was computed from another case than this tactsim draws")
-    return drawn.case
+    return next(stored_cases(sweep, [sample], [place.read("case_id")[sample]], str(store)))
 
 
 def dataset_of(store: Store) -> xarray.Dataset:

@@ -11,17 +11,15 @@ from typing import Any
 
 import numpy as np
 import pytest
-import xarray
 from drawn import colliding_words
 from made_grasps import LAYOUT, SIZE, made_samples, made_store, plain_result, response
-from scipy.stats import norm
 
 from tactsim import progress
 from tactsim.cli import main
 from tactsim.dataset.figures.estimator_ranking import AXES, errors_figure, ranking_figures, roc, roc_figure
-from tactsim.dataset.ranking.measures import JudgedEstimate, binned, interval, measures, outcome, penalty, ranking, share
+from tactsim.dataset.ranking.measures import JudgedEstimate, binned, measures, outcome, penalty, ranking
 from tactsim.dataset.ranking.report import against_baseline, as_summary, as_text, record
-from tactsim.dataset.ranking.samples import Truth, _varied_readout, judged_samples
+from tactsim.dataset.ranking.samples import Truth, judged_samples
 from tactsim.dataset.ranking.training import seen_in_training
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
@@ -91,25 +89,6 @@ def test_what_no_sample_reports_is_none() -> None:
     assert numbers["lateral_error"] is None
     assert numbers["coverage"] is None
     assert "NaN" not in json.dumps(numbers, allow_nan=False)
-
-
-def test_an_interval_holds_its_value_and_shrinks() -> None:
-    generator = np.random.default_rng(5)
-    few, many = (interval(generator.standard_normal(n), np.mean) for n in (20, 2000))
-    assert few is not None
-    assert many is not None
-    assert few["low"] < few["value"] < few["high"]
-    assert many["high"] - many["low"] == pytest.approx(4 * 0.98 / np.sqrt(2000), rel=0.15)
-    assert many["high"] - many["low"] < few["high"] - few["low"]
-
-
-def test_the_interval_of_a_rate_has_a_width_at_its_ends():
-    all_detected = share([True] * 20)
-    assert all_detected is not None
-    assert all_detected["value"] == 1.0
-    z = norm.ppf(0.975)
-    assert all_detected["low"] == pytest.approx(20 / (20 + z**2), rel=1e-9)  # Wilson's by hand for 20 of 20
-    assert share([]) is None
 
 
 def test_bins_hold_every_lump_once() -> None:
@@ -203,25 +182,19 @@ def test_an_estimator_that_was_trained_on_what_it_is_ranked_by_is_warned_of(tmp_
     assert "trained on" not in as_text([], ranked, (), unseen)
 
 
-def test_intervals_of_grasps_that_share_specimens_are_said_to_be_too_narrow() -> None:
-    apart = replace(made_samples(12, response()), specimens=12)
-    shared = replace(apart, specimens=3)
-    words = "the 12 grasps are of 3 specimens"
+def test_a_ranking_says_how_many_specimens_there_are_and_how_the_noise_varies() -> None:
+    apart = made_samples(12, response())
+    shared = replace(
+        apart,
+        truths=tuple(replace(truth, specimen=truth.sample // 4) for truth in apart.truths),
+        noise=np.linspace(1e-3, 2e-3, 12),
+    )
     for text in (as_text([], shared, ()), " ".join(as_summary([], shared).split())):
-        assert words in text
-        assert "2 times as wide" in text
+        assert "12 grasps of 3 specimens" in text
+        assert "noise of a reading 1 mN to 2 mN" in text
     assert record([], shared, {})["specimens"] == 3
-    assert "specimens" not in as_text([], apart, ()) + as_summary([], apart)
-
-
-def test_a_ranking_says_that_it_takes_the_noise_of_the_first_sample_for_all() -> None:
-    varied = ("experiment.readout.chain.noise.white",)
-    samples = replace(made_samples(4, response()), varied_readout=varied)
-    for text in (as_text([], samples, ()), " ".join(as_summary([], samples).split())):
-        assert "noise.white varies, but every grasp is judged with noise and references as the readout of the first" in text
-    words = {"long_name": varied[0]}
-    names = ("varied_readout_chain_noise_white", "varied_readout_seed", "varied_contact_friction")
-    assert _varied_readout(xarray.Dataset({name: ("sample", [1.0], words) for name in names})) == varied
+    assert record([], shared, {})["noise"] == {"value": 1.5e-3, "low": 1e-3, "high": 2e-3, "unit": "N"}
+    assert "12 grasps, " in as_text([], apart, ())
 
 
 @pytest.mark.parametrize("contrasts", [(1.69, 1.69), (1.5, 4.0), (1.5, 100.0)])

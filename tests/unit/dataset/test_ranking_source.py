@@ -19,13 +19,16 @@ from made_grasps import (
     plain_forces,
     plain_result,
     response,
+    sum_up,
 )
 from scenes import grasp_scene
 from sweeps import small_store
 
 from tactsim.cli import main
 from tactsim.dataset.ranking.reference import PlainGrasp
-from tactsim.dataset.ranking.samples import judged_samples
+from tactsim.dataset.ranking.samples import added_noise, judged_samples
+from tactsim.dataset.store.opening import Store
+from tactsim.dataset.use.loading import sample_case
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization.source import stored_grasp
 from tactsim.mesh.inclusions.sphere import Sphere
@@ -92,11 +95,12 @@ def test_the_noise_of_readings_is_as_large_as_stated() -> None:
 def test_read_forces_are_held_against_a_reference_read_alike(tmp_path: Path, plain: str) -> None:
     place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", READOUT))
     samples = judged_samples(place, [plain], source="read_force")
-    assert samples.own_noise == samples.noise > 0
+    assert (samples.own_noise == samples.noise).all()
+    assert samples.noise == pytest.approx(np.full(40, samples.noise[0])), "sensors of one kind"
     assert samples.references.shape == samples.forces.shape
     louder = judged_samples(place, [plain], source="read_force", noise=5e-3)
     assert louder.noise == pytest.approx(np.hypot(5e-3, samples.noise))
-    assert louder.added(1.0) == pytest.approx(5e-3)
+    assert added_noise(louder.noise, louder.own_noise, 1.0) == pytest.approx(5e-3)
     assert np.abs(samples.references / samples.plain.at([t.closing for t in samples.truths]) - 1).max() > 0.05
 
 
@@ -107,6 +111,43 @@ def test_readings_without_noise_are_refused(tmp_path: Path, plain: str) -> None:
     with pytest.raises(InputError, match=r"read without noise.*--noise '1 mN' \(in Python: noise=1e-3\)"):
         judged_samples(place, [plain], source="read_force")
     assert judged_samples(place, [plain], source="read_force", noise=1e-3).noise == pytest.approx(1e-3)
+
+
+def test_every_sample_is_judged_with_the_noise_of_its_own_sensors(tmp_path: Path, plain: str) -> None:
+    """All were judged with those of the first one: where white noise varies tenfold, regions were too wide or too narrow."""
+    varied = READOUT.replace("white: 1 mV", "white: {log_uniform: [0.1 mV, 10 mV]}")
+    place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", varied))
+    samples = judged_samples(place, [plain], source="read_force")
+    white = [sample_case(place, truth.sample).experiment.readout.chain.noise.white for truth in samples.truths]
+    order = np.argsort(white)
+    ratio = samples.noise[order[-8:]] / np.array(white)[order[-8:]]
+    assert ratio == pytest.approx(np.full(8, ratio.mean()), rel=0.2), "noise of repeated readings, 16 of 18 taxels, in V"
+    assert samples.noise[order[0]] < 0.1 * samples.noise[order[-1]]
+    assert [reading.noise for reading in samples.readings(multiple=2.0)] == pytest.approx(2 * samples.noise)
+    quiet = READOUT.replace("white: 1 mV", "white: {uniform: [0 mV, 1e-12 mV]}")
+    (tmp_path / "quiet").mkdir()
+    with pytest.raises(InputError, match="read without noise"):
+        judged_samples(
+            made_store(tmp_path / "quiet", response(), TEXT.replace("  time: {steps: 1}\n", quiet)), [plain], source="read_force"
+        )
+
+
+def test_a_sample_that_was_computed_from_another_case_is_refused(tmp_path: Path, plain: str) -> None:
+    varied = READOUT.replace("white: 1 mV", "white: {uniform: [1 mV, 2 mV]}")
+    place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", varied))
+    Store.open(place, writing=True).array("case_id")[3] = "f" * 16
+    sum_up(place)
+    with pytest.raises(StorageError, match="sample 3 was computed from another case than this tactsim draws"):
+        judged_samples(place, [plain], source="read_force")
+
+
+def test_samples_of_one_specimen_keep_its_number(tmp_path: Path, plain: str) -> None:
+    shared = TEXT.replace(
+        "samples: 40,", "samples: 40, samples_per_specimen: 2, within_specimen: [experiment.loading.pieces.0.to],"
+    )
+    place = made_store(tmp_path, response(), shared.replace("to: 1 mm", "to: {uniform: [0.5 mm, 1 mm]}"))
+    samples = judged_samples(place, [plain], source="taxel_force")
+    assert [truth.group for truth in samples.truths] == [k // 2 for k in range(40)]
 
 
 @pytest.mark.parametrize(

@@ -133,6 +133,30 @@ def test_mirror_images_are_those_of_the_fast_model():
     assert mirrored.changes[there] != pytest.approx(expected[::-1], abs=0.06 * size)
 
 
+def test_whole_specimens_are_held_out() -> None:
+    """Samples of one lump stood on both sides, so that the errors of those held out were too small."""
+    apart = made_samples(60, response())
+    shared = replace(apart, truths=tuple(replace(truth, specimen=truth.sample // 3) for truth in apart.truths))
+    held = training._held_out(shared, np.random.default_rng(1))
+    assert held.reshape(20, 3).all(axis=1).sum() == 4
+    assert held.sum() == 12
+    assert training._held_out(apart, np.random.default_rng(1)).sum() == 12
+
+
+def test_examples_of_the_fast_model_get_all_their_noise() -> None:
+    """The noise of read forces, which those of the model do not have, was left out of them."""
+    read = made_samples(24, response())
+    read = replace(read, noise=np.repeat([1e-3, 2e-3], 12), own_noise=np.repeat([1e-3, 2e-3], 12))
+    fast = training._fast(read, response(), np.random.default_rng(1))
+    noisy, _ = training._noisy(replace(fast, changes=np.zeros_like(fast.changes)), np.random.default_rng(2), exact=True)
+    stated = fast.noise / np.abs(fast.references).sum(axis=(1, 2, 3))
+    size = np.exp(noisy[:, -2]) / stated  # of 18 taxels with twice the variance, against a reference
+    assert np.median(size) == pytest.approx(np.sqrt(2 * 18), rel=0.03)
+    assert sorted(set(fast.noise)) == [1e-3, 2e-3]
+    own, _ = training._noisy(training._examples(read), np.random.default_rng(2), exact=True)
+    assert own[:, :18] == pytest.approx(training.inputs(read.forces - read.references, read.references, read.noise)[:, :18])
+
+
 def test_training_finds_lumps_and_needs_enough(tmp_path, monkeypatch):
     pytest.importorskip("sklearn")
     monkeypatch.setattr(training, "FAST", 1500)
