@@ -110,9 +110,10 @@ def _specimens(samples: JudgedSamples) -> int:
 
 def _noise_words(samples: JudgedSamples) -> str:
     """The noise of a reading, or its range if sensors vary."""
-    low, high = float(samples.noise.min()), float(samples.noise.max())
-    same = np.isclose(low, high, rtol=1e-9)
-    return noise_in_words(low) if same else f"{format_quantity(low, 'N')} to {format_quantity(high, 'N')}"
+    low, high = (f"{noise:.3g}" for noise in (samples.noise.min(), samples.noise.max()))  # known to a few parts in a hundred
+    if low == high:
+        return noise_in_words(float(samples.noise[0]))
+    return f"{format_quantity(float(low), 'N')} to {format_quantity(float(high), 'N')}"
 
 
 def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str], seen: int = 0) -> str:
