@@ -13,13 +13,12 @@ from typing import Self
 import numpy as np
 import scipy
 
+from tactsim.analytic.eshelby_ball import stiffness_ratio_of
 from tactsim.array import Array
 from tactsim.deadline import check_time
 from tactsim.errors import InvalidQuantity
 from tactsim.mesh.block import part_of_usual
 
-RIGID_CONTRAST = 2.5
-"""Contrast of a small rigid ball in incompressible tissue."""
 MOST_TOLD_APART = 10
 """Ratio of stiffness beyond which the contrast hardly changes."""
 FINER = 4
@@ -103,30 +102,6 @@ def tabulated_radii(usual: Array, size: Sequence[float]) -> Array:
 def spacing_of_centres(usual: float, size: Sequence[float], most: int) -> float:
     """Distance in m of tabulated centres in a block of this size (3,) in m: usual but for small blocks, and at most so many."""
     return max(part_of_usual(size) * usual, float(np.prod(size) / most) ** (1 / 3))
-
-
-def eshelby_contrast(shear_ratio: Array) -> Array:
-    r"""Contrast of a small ball in incompressible tissue, dimensionless, for its shear modulus over that of the tissue.
-
-    .. math:: c = \frac{5 (k - 1)}{2 k + 3}
-
-    It lies between -5/3 (a hole) and 5/2 (rigid). Source: J. D. Eshelby 1957, doi:10.1098/rspa.1957.0133, for nu = 1/2.
-    """
-    ratio = np.asarray(shear_ratio, dtype=float)
-    return 5 * (ratio - 1) / (2 * ratio + 3)
-
-
-def stiffness_ratio_of(contrast: float) -> float:
-    r"""Stiffness of a small ball over that of the tissue at the working strain, dimensionless, from its contrast c.
-
-    .. math:: k = \frac{5 + 3 c}{5 - 2 c}
-
-    The inverse of :func:`eshelby_contrast`: 1 for tissue, 0 for a hole, infinite from c = 5/2 on, where the ball is as good as
-    rigid, or too large for a small one.
-    """
-    if contrast >= RIGID_CONTRAST:
-        return float("inf")
-    return max(0.0, (5 + 3 * contrast) / (5 - 2 * contrast))
 
 
 def stiffness_words(contrast: float, deviation: float = 0.0) -> str:

@@ -9,6 +9,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.analytic.eshelby_ball import eshelby_contrast
 from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.experiments.localization.detectability_statistics import false_alarm_threshold, smallest_radius, unit_templates
 from tactsim.experiments.localization.response_store import kept_response
@@ -17,7 +18,7 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.lump_response import LumpResponse, eshelby_contrast, spacing_of_centres, tabulated_radii
+from tactsim.localization.lump_response import LumpResponse, spacing_of_centres, tabulated_radii
 from tactsim.materials.library import named_material
 from tactsim.mechanics.paths.loading import close
 from tactsim.mesh.block import part_of_usual

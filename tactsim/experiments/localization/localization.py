@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.analytic.eshelby_ball import stiffness_ratio_of
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, Source
@@ -31,7 +32,7 @@ from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
 from tactsim.localization.checked_estimate import estimate_of
 from tactsim.localization.estimators.any_estimator import AnyEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
-from tactsim.localization.lump_response import stiffness_ratio_of, stiffness_words
+from tactsim.localization.lump_response import stiffness_words
 from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.outside.input_path import InputPath
 from tactsim.progress import elapsed_time

@@ -31,6 +31,7 @@ from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.contact.surface_forces import TaxelForces, taxel_forces
 from tactsim.mechanics.contact.traction_recovery import recovered_forces
 from tactsim.mechanics.fields.solid_fields import solid_frame
+from tactsim.mechanics.models.first_guess import compressed
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
 
@@ -38,8 +39,6 @@ CLOSING = {side: np.array([0.0, 0.0, -OUTWARD[side]]) for side in JAWS}
 """Directions in which the jaws close."""
 START_PATIENCE = 6
 """Iterations in which Newton halves the residual where it finds to the equilibrium: three in most closings, five in few cells."""
-LEAST_STRETCH = 0.5
-"""Of a first guess."""
 
 
 class GraspModel:
@@ -131,16 +130,9 @@ class GraspModel:
         return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
 
     def compressed(self, closing: float) -> Array:
-        """Unknowns (size,) of the block under uniform compression at constant volume, each jaw's face closed by ``closing`` in m.
-
-        Newton starts there: from the undeformed block, its first step would turn thin cells at the free edges inside out.
-        """
-        low, high = self.mesh.nodes.min(axis=0), self.mesh.nodes.max(axis=0)
-        height = (high - low)[2]
-        stretch = max(1 - 2 * closing / height, LEAST_STRETCH)
+        """Unknowns (size,) that Newton starts from in the undeformed block, each jaw's face closed by ``closing`` in m."""
         unknowns = np.zeros(self.space.size)
-        wider = stretch**-0.5 - 1
-        self.space.split(unknowns)[0][:] = (self.mesh.nodes - (low + high) / 2) * [wider, wider, stretch - 1]
+        self.space.split(unknowns)[0][:] = compressed(self.mesh, self.body.shear_moduli, closing)
         return unknowns
 
     def _friction_mask(self, side: str) -> Array:

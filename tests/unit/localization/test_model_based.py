@@ -6,11 +6,12 @@ import numpy as np
 import pytest
 from made_grasps import LAYOUT, SIZE, bell_response, cells_of_block
 
+from tactsim.analytic.eshelby_ball import eshelby_contrast
 from tactsim.errors import CaseError, InputError, InvalidQuantity
 from tactsim.interfaces.readings import Readings
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
-from tactsim.localization.lump_response import LumpResponse, eshelby_contrast
+from tactsim.localization.lump_response import LumpResponse
 
 CELLS = (80, 80, 40)
 RADII = np.array([2e-3, 3e-3, 4e-3, 5e-3, 6e-3])

@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tactsim.localization.lump_response import eshelby_contrast, stiffness_ratio_of, stiffness_words
+from tactsim.analytic.eshelby_ball import eshelby_contrast, stiffness_ratio_of
+from tactsim.localization.lump_response import stiffness_words
 from tactsim.materials.homogeneous import nominal_stress, stiffness_ratio
 from tactsim.materials.library import named_material
 
