@@ -50,7 +50,7 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
     lines = [part for line in lines for part in wrap(line, LINE)]
     lines += [f"Estimated at {place}" for place in places]
     if "center_deviation" in quantities:
-        deviations = ", ".join(f"{1e3 * value:.2g}" for value in quantities["center_deviation"].numbers)
+        deviations = ", ".join(f"{1e3 * value:.{digits}f}" for value in quantities["center_deviation"].numbers)
         lines.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
     else:
         lines.append(NO_ERROR if len(places) == 1 else NO_ERRORS)
