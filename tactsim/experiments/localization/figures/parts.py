@@ -24,8 +24,13 @@ def localized(result: Result) -> ViewedGrasp:
         grasp,
         valid=grasp.valid if scene.valid is None else np.array(scene.valid),
         estimates=tuple(estimate.inclusion() for estimate in scene.estimates),
-        findings=_findings(scene, result) if "present" in result.quantities else grasp.findings,
+        findings=(*_findings(scene, result), *_not_taken_off(scene)) if "present" in result.quantities else grasp.findings,
     )
+
+
+def _not_taken_off(scene: LocalizedGrasp) -> tuple[str, ...]:
+    """What was read, if that is not what is drawn."""
+    return ("Read off the forces as they are; drawn is their difference from the reference.",) if scene.reference_unused else ()
 
 
 def _contrast(result: Result) -> str:

@@ -283,3 +283,10 @@ experiment:
     path.write_text(text.replace("noise: 1 mN", "noise: -1 mN"), encoding="utf-8")
     with pytest.raises(CaseError, match="noise"):
         load_case(path)
+
+
+def test_the_views_say_where_the_estimator_did_not_read_what_they_draw(folders):
+    words = "Read off the forces as they are; drawn is their difference from the reference."
+    assert localized(run(folders, estimator=ThesisEstimator())).findings[-1] == words
+    assert words not in localized(run(folders)).findings
+    assert words not in localized(run(folders, reference=None, estimator=ThesisEstimator())).findings
