@@ -94,13 +94,16 @@ def report(
 
         texts = {TABLE_FILE: comparison.csv_text(), "comparison.md": comparison.markdown_text()}
         files = {name: text.encode() for name, text in texts.items()}
-        if form != "none":
-            from tactsim.cli.figures.comparison import drawn_comparison
+        drawn, remark = form != "none", ""
+        if drawn:
+            from tactsim.cli.figures.comparison import drawn_comparison, has_figure
 
-            files[f"comparison.{form}"] = drawn_comparison(results, comparison, form)
+            drawn = has_figure(results, comparison)
+            remark = "" if drawn else "; no figure, for no two of the results share a number"
+            files |= {f"comparison.{form}": drawn_comparison(results, comparison, form)} if drawn else {}
         write_files(files, out)
         if not quiet:
-            console.out(f"comparison {one_line(out)}")
+            console.out(f"comparison {one_line(out)}{remark}")
 
 
 def _print(comparison: Comparison, everything: bool) -> None:

@@ -89,13 +89,15 @@ class RelaxationFit:
 
     def __str__(self) -> str:
         """Errors, line of a case file and intervals."""
-        errors = f"largest relative error {self.max_relative_error:.1%}, rms {self.rms_relative_error:.1%}"
+        errors = f"largest relative error {100 * self.max_relative_error:.1f} %, rms {100 * self.rms_relative_error:.1f} %"
         fractions, times = (
             ", ".join(f"{low:.3g} to {high:.3g}" for low, high in ends.T)
             for ends in (self.fraction_intervals, self.time_intervals)
         )
         low, high = self.equilibrium_interval
-        ranges = f"{COVERED:.0%} intervals: fractions {fractions}; times in s {times}; part that stays {low:.3g} to {high:.3g}"
+        ranges = (
+            f"{100 * COVERED:.0f} % intervals: fractions {fractions}; times in s {times}; part that stays {low:.3g} to {high:.3g}"
+        )
         return f"{len(self.relaxation.times)} relaxation times: {errors}\n  {self.case_line}\n  {ranges}"
 
     @property

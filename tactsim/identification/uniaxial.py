@@ -94,7 +94,7 @@ class UniaxialFit:
 
     def __str__(self) -> str:
         """Errors, line of a case file and intervals."""
-        errors = f"largest relative error {self.max_relative_error:.1%}, rms {self.rms_relative_error:.1%}"
+        errors = f"largest relative error {100 * self.max_relative_error:.1f} %, rms {100 * self.rms_relative_error:.1f} %"
         stable = "strongly elliptic" if self.stability.strongly_elliptic else "NOT strongly elliptic everywhere"
         return f"{self.form}: {errors}; {stable}\n  {self.case_line}\n  {self.certainty}"
 
@@ -189,7 +189,7 @@ def spread_of_forms(fits: Sequence[UniaxialFit]) -> tuple[str, ...]:
         return open_side
     sizes = [abs(uniaxial_nominal_stress(material, np.array(where)).item()) for material in stable]
     ratio = max(sizes) / min(sizes)
-    differ = f"agree within {max(ratio - 1, 0.001):.1%}" if ratio < ALIKE else f"differ by a factor of {ratio:.2g}"
+    differ = f"agree within {100 * max(ratio - 1, 0.001):.1f} %" if ratio < ALIKE else f"differ by a factor of {ratio:.2g}"
     return (f"{open_side[0]}: at a stretch of {where:g} the stable fits {differ}",)
 
 

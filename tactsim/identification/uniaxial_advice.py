@@ -41,7 +41,7 @@ def advice(fits: Sequence[UniaxialFit]) -> str:
         return ""
     return (
         f"take {form.form}: of the strongly elliptic forms that follow this curve not significantly worse than the best of them "
-        f"(F test, {LEVEL:.0%}) it has the fewest constants, {_constants(form)}"
+        f"(F test, {100 * LEVEL:.0f} %) it has the fewest constants, {_constants(form)}"
     )
 
 

@@ -48,7 +48,7 @@ class UniaxialCertainty:
         if self.noise.in_runs:
             warnings.append(
                 f"the residuals come in runs of one sign: the form does not follow the curve, which it misses by up to "
-                f"{largest_error:.1%}; the intervals are wide for it and hold for this form only: take fewer strains"
+                f"{100 * largest_error:.1f} %; the intervals are wide for it and hold for this form only: take fewer strains"
             )
         return tuple(warnings)
 
@@ -56,7 +56,9 @@ class UniaxialCertainty:
         """The intervals in a line."""
         ranges = ", ".join(_named_range(name, ends) for name, ends in self.intervals.items())
         open_ends = f"; not determined one by one: {', '.join(self.undetermined)}" if self.undetermined else ""
-        return f"{COVERED:.0%} intervals: {ranges}, {_named_range('shear modulus at rest', self.shear_modulus)}{open_ends}"
+        return (
+            f"{100 * COVERED:.0f} % intervals: {ranges}, {_named_range('shear modulus at rest', self.shear_modulus)}{open_ends}"
+        )
 
 
 def certainty(squares: LeastSquares, design: Array, target: Array, names: tuple[str, ...]) -> UniaxialCertainty:

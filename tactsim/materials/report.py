@@ -35,7 +35,7 @@ def _origin_lines(entry: MaterialSet | None, material: Material) -> list[str]:
     lines = [f"  source: {entry.source}", f"  note: {entry.note}"]
     if entry.fitted_stretch and entry.max_relative_error is not None and entry.rms_relative_error is not None:
         lines.append(
-            f"  fit: largest relative error {entry.max_relative_error:.1%}, rms {entry.rms_relative_error:.1%}, "
+            f"  fit: largest relative error {100 * entry.max_relative_error:.1f} %, rms {100 * entry.rms_relative_error:.1f} %, "
             f"over uniaxial stretch {_interval(entry.fitted_stretch)}"
         )
     if entry.left_open:

@@ -227,8 +227,8 @@ def ink_on(colour: Sequence[float]) -> str:
 
 
 def with_minus(words: str) -> str:
-    """Numbers in words with the minus sign that axes have, not a hyphen."""
-    return re.sub(r"(?<![\w.])-(?=[\d.])", "−", words)
+    """Numbers in words, and differences of which one is taken off, with the minus sign that axes have, not a hyphen."""
+    return re.sub(r"(?<![\w.])-(?=[\d.])|(?<=[\w)] )-(?= [\d.])", "−", words)
 
 
 def despined(axis: Axes) -> None:

@@ -202,7 +202,7 @@ def run_cells(runs: Sequence[Any]) -> list[tuple[str, ...]]:
     for run in runs:
         pressure = run.quantities.get("threshold_pressure") if run.converged else None
         over = ["-", "-"] if pressure is None else [format_quantity(p, "Pa") for p in (pressure, pressure * run.disc_share)]
-        unstable = f"{run.quantities.get('unstable_volume_fraction', 0.0):.1%}"
+        unstable = f"{100 * run.quantities.get('unstable_volume_fraction', 0.0):.1f} %"
         lines.append(
             (run.id, run.status, *over, format_quantity(run.quantities.get("displacement", 0.0), "m"), unstable, run.reason)
         )

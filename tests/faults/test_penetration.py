@@ -98,7 +98,7 @@ def test_a_run_that_loses_force_to_penetration_fails_and_reports_what_to_take():
     result = run(Indentation, penetration_tolerance=2e-5, **SHALLOW)
     assert result.status is Status.FAILED
     assert "% of the force by its estimate" in result.reason
-    assert "allowed: 0.5%; take penetration_tolerance: at most " in result.reason
+    assert "allowed: 0.5 %; take penetration_tolerance: at most " in result.reason
     assert run(Indentation, penetration_tolerance=1e-6, **SHALLOW).status is Status.CONVERGED
 
 
@@ -147,8 +147,8 @@ GOOD = {
         ({}, math.nan, "the residual is nan"),
         ({"min_volume_ratio": 0.0}, 1e-12, "inside out"),
         ({"max_penetration": 2e-6}, 1e-12, "the penetration is 2 µm; allowed: 1 µm"),
-        ({"penetration_force_error": 6e-3}, 1e-12, "takes away 0.60% of the force"),
-        ({"penetration_force_error": 6e-3, "max_penetration": 0.0}, 1e-12, "takes away 0.60% of the force"),
+        ({"penetration_force_error": 6e-3}, 1e-12, "takes away 0.60 % of the force"),
+        ({"penetration_force_error": 6e-3, "max_penetration": 0.0}, 1e-12, "takes away 0.60 % of the force"),
     ],
 )
 def test_one_place_says_no(values, residual, words):

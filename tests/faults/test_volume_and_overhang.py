@@ -64,8 +64,8 @@ def test_overhanging_taxels_are_reported_jaw_by_jaw():
     block = {"size": (30e-3, 30e-3, 20e-3), "tissue": "icf_stable"}
     wide = {"rows": 3, "columns": 3, "pitch": 13e-3, "size": 9e-3}
     upper, lower = overhang_warnings(grasp(block=block, matrix=wide))
-    assert upper.startswith("8 of 9 taxels of the upper jaw reach beyond the block: 403 mm^2 of their 648 mm^2 (62.2%) face it")
-    assert "least row 1, column 1 with 42.25 mm^2 (52.2%)" in upper
+    assert upper.startswith("8 of 9 taxels of the upper jaw reach beyond the block: 403 mm^2 of their 648 mm^2 (62.2 %) face it")
+    assert "least row 1, column 1 with 42.25 mm^2 (52.2 %)" in upper
     assert "lower jaw" in lower
     assert overhang_warnings(grasp(block=block, matrix=wide | {"pitch": 10.5e-3})) == []
 

@@ -32,6 +32,8 @@ DASHES = ("-", "--", "-.", ":")
 MARKS = ("", "o", "s", "^", "D", "v")
 """Dashes of the curves, one after the other, and marks of their ends, another with every round: told apart without colour.
 The first have none: in a legend a mark hides the middle of the dashes."""
+FEW_STEPS = 12
+"""Up to which each step of a curve is marked: straight lines between a few are not what was computed."""
 MOST_NAMED, TITLE_WIDTH = 4, 66
 """Parts in which the cases differ that the title names, and characters of its lines."""
 
@@ -59,6 +61,12 @@ def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> 
         first, *rest = _title(comparison)
         entitle(figure, first, " ".join(rest))
     return figure
+
+
+def has_figure(results: Mapping[str, Result], comparison: Comparison) -> bool:
+    """Whether the results share anything that a figure shows: a history, maps of taxels or a number."""
+    common = any(_have(results, pair) for pair in CURVES) or taxel_maps(results) is not None
+    return common or bool(_bars(comparison, above_maps=False))
 
 
 def _bars(comparison: Comparison, above_maps: bool) -> list[Column]:
@@ -130,11 +138,13 @@ def _draw_curves(axis: Axes, results: Mapping[str, Result], pair: tuple[str, str
     shortest_last = sorted(series, key=lambda name: -np.nanmax(np.abs(series[name][0])))
     for number, (name, (x, y)) in enumerate(series.items()):
         dash, mark = DASHES[number % len(DASHES)], MARKS[number // len(DASHES) % len(MARKS)]
-        if len(x) == 1:
-            dash, mark = "none", mark or "o"
+        ends: list[int] | None = [-1]
+        if len(x) <= FEW_STEPS:
+            dash, mark, ends = (dash, mark or ".", None) if len(x) > 1 else ("none", mark or "o", None)
         label = _labelled(name, results[name])
         above = 2 + shortest_last.index(name) / len(series)  # where two coincide, both are seen
-        style: dict[str, Any] = {"linestyle": dash, "marker": mark, "markevery": [-1], "markersize": 5, "zorder": above}
+        style: dict[str, Any] = {"linestyle": dash, "marker": mark, "markevery": ends, "zorder": above}
+        style["markersize"] = 9 if mark == "." else 5
         axis.plot(scales[0][0] * x, scales[1][0] * y, label=label, **style)
     reached = [place for result in results.values() if (place := _threshold(result, pair)) is not None]
     if reached:

@@ -74,7 +74,7 @@ def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> 
     upper.plot(curve.stretch, curve.nominal_stress * factor, "o", color="0.6", markersize=4, markevery=every, label="data")
     stretch = np.linspace(curve.stretch.min(), curve.stretch.max(), CURVE_POINTS)
     for style, fit in zip(LINE_STYLES, fits, strict=False):
-        label = f"{fit.form}: max {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
+        label = f"{fit.form}: max {100 * fit.max_relative_error:.1f} %, rms {100 * fit.rms_relative_error:.1f} %"
         upper.plot(stretch, uniaxial_nominal_stress(fit.material, stretch) * factor, style, label=label)
         lower.plot(curve.stretch, 100 * relative_errors(fit.material, curve), style)
     upper.set_ylabel(f"nominal stress in {unit}")

@@ -127,7 +127,7 @@ def _present(row: Mapping[str, Any]) -> bool:
 
 def errors_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
     """Rates and median errors, one row each, over depth, radius, contrast and closing, one column each, with 95 % intervals."""
-    below = "numbers above: lumps in each bin; bars: 95 % intervals"
+    below = "numbers above: lumps in each bin, in which the estimators stand side by side; bars: 95 % intervals"
     with titled_figure(2.6 * len(AXES) + 0.6, 2.1 * len(ROWS) + 0.5, "Errors of the estimators", below) as figure:
         grid = figure.subplots(len(ROWS), len(AXES), squeeze=False, sharex="col", sharey="row")
         for row, measure in enumerate(ROWS):

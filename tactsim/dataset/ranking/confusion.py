@@ -129,7 +129,7 @@ def as_text(content: Mapping[str, Any], figures: Mapping[str, bytes]) -> str:
     """The table in Markdown, true classes down and estimated ones across; a class that does not occur has no row."""
     names = [name.replace("_", " ") for name in content["classes"]]
     rows = [
-        [shown, *counts, f"{content['recalls'][name]:.0%}"]
+        [shown, *counts, f"{100 * content['recalls'][name]:.0f} %"]
         for name, shown, counts in zip(content["classes"], names, content["counts"], strict=True)
         if content["recalls"][name] is not None
     ]

@@ -124,8 +124,8 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
         "",
         f"{_counted(samples)}, {lumps} with a lump, {len(samples.truths) - lumps} without; readings {samples.source}, "
         f"noise of a reading {_noise_words(samples)}. {SCORE}",
-        f"In brackets the {INTERVAL:.0%} interval over specimens, of rates by Wilson, of all else by the bootstrap. Depths are "
-        "those of the centre below the upper face; inclusion_depth in the data set is that of the highest point.",
+        f"In brackets the {100 * INTERVAL:.0f} % interval over specimens, of rates by Wilson, of all else by the bootstrap. "
+        "Depths are those of the centre below the upper face; inclusion_depth in the data set is that of the highest point.",
         "",
         *((words, "") if (words := seen_words(seen, samples)) else ()),
         *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),

@@ -251,14 +251,14 @@ def _warnings(quantities: dict[str, Quantity]) -> Iterator[str]:
         return
     outside = np.mean(quantities["outside_small_displacement"].value)
     if outside:
-        yield f"{outside:.0%} of the map has a displacement beyond {SMALL_DISPLACEMENT:g} of the outer radius"
+        yield f"{100 * outside:.0f} % of the map has a displacement beyond {SMALL_DISPLACEMENT:g} of the outer radius"
     touching = quantities["touch_displacement_over_radius"].numbers
     beyond = np.mean(touching > SMALL_DISPLACEMENT)
     if beyond:
-        yield f"{beyond:.0%} of the sensors are touched only beyond that, where linear theory is no more than a hint"
+        yield f"{100 * beyond:.0f} % of the sensors are touched only beyond that, where linear theory is no more than a hint"
     base = "would be pressed to the base of the layer, where nothing is reported"
     pressed = np.mean(np.isnan(quantities["displacement"].numbers))
     if pressed:
-        yield f"in {pressed:.0%} of the map the annulus {base}"
+        yield f"in {100 * pressed:.0f} % of the map the annulus {base}"
     if never := np.mean(np.isnan(touching)):
-        yield f"{never:.0%} of the sensors {base}, before they are touched"
+        yield f"{100 * never:.0f} % of the sensors {base}, before they are touched"

@@ -68,9 +68,9 @@ class Probes:
             part, size = parts[one.face][:, axis].sum(), np.abs(forces[one.face][:, axis]).sum()
             if abs(part) > LARGEST_FORCE_ERROR * size:
                 doubts.append(
-                    f"{name}: {abs(part) / size:.1%} of the force on {one.face} is at edges that other faces or planes of "
-                    "symmetry hold, too; each is given an equal part, so that the force is uncertain by as much: shorter cells "
-                    "beside these edges make it less"
+                    f"{name}: {100 * abs(part) / size:.1f} % of the force on {one.face} is at edges that other faces or planes "
+                    "of symmetry hold, too; each is given an equal part, so that the force is uncertain by as much: shorter "
+                    "cells beside these edges make it less"
                 )
         return doubts
 

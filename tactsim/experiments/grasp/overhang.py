@@ -38,8 +38,8 @@ def overhang_warnings(grasp: GraspSetup) -> list[str]:
             covered, whole, least = 1e6 * areas[beyond].sum(), 1e6 * layout.area * beyond.sum(), 1e6 * areas.min()
             warnings.append(
                 f"{beyond.sum()} of {areas.size} taxels of the {side} jaw reach beyond the block: {covered:.4g} mm^2 of their "
-                f"{whole:.4g} mm^2 ({covered / whole:.1%}) face it, least row {row + 1}, column {column + 1} with {least:.4g} "
-                f"mm^2 ({areas.min() / layout.area:.1%}); their pressures are forces over whole taxels"
+                f"{whole:.4g} mm^2 ({100 * covered / whole:.1f} %) face it, least row {row + 1}, column {column + 1} with "
+                f"{least:.4g} mm^2 ({100 * areas.min() / layout.area:.1f} %); their pressures are forces over whole taxels"
             )
     return warnings
 

@@ -72,7 +72,7 @@ def single_step(readout: MatrixReadout, reading: MatrixReading, area: float) -> 
     if not _remembers(readout.film_of(area), float(reading.time[-1]), float(reading.applied[-1].max())):
         return ()
     return (
-        "the film creeps, and the force is taken to rise evenly in the one step: read forces may be 5% too high; in "
+        "the film creeps, and the force is taken to rise evenly in the one step: read forces may be 5 % too high; in "
         f"the grasp, take time.steps: {ENOUGH_STEPS}",
     )
 

@@ -56,8 +56,9 @@ def uneven(asymmetry: float | None) -> list[str]:
     if asymmetry is None or asymmetry <= VISIBLE:
         return []
     return [
-        f"the grasp is its own mirror image, but its taxels differ from theirs by up to {asymmetry:.1%} of the largest force: "
-        "the mesh shows in the forces, and nothing smaller than this should be read from a single taxel; take smaller elements"
+        f"the grasp is its own mirror image, but its taxels differ from theirs by up to {100 * asymmetry:.1f} % of the largest "
+        "force: the mesh shows in the forces, and nothing smaller than this should be read from a single taxel; take smaller "
+        "elements"
     ]
 
 

@@ -58,6 +58,8 @@ class LocalizedGrasp(GraspScene):
     """Which taxels [jaw][row][column] can be trusted, the others are interpolated; null if all can."""
     words: tuple[str, ...] = ()
     """The estimates in words."""
+    reference_unused: bool = False
+    """Whether the estimator read the forces as they are, although there is a reference, which the figures take off."""
 
 
 class JudgedGrasp(FrozenModel):

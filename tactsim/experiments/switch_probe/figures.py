@@ -84,7 +84,7 @@ def _rate(rate: float) -> str:
 
 
 def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest: float = 0.0) -> Figure:
-    size, words = (max(narrowest, 1.6 + 3.1 * len(panels)), 3.8), f"{title}; marks: read as each switch closed, at its height"
+    size, words = (max(narrowest, 1.6 + 3.1 * len(panels)), 3.8), f"{title}; marks: read as each switch closed"
     with result_figure(result, size, below=words, title_size=TITLE_SIZE) as figure:
         axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
         for axis, panel in zip(axes, panels, strict=True):
@@ -100,7 +100,8 @@ def switch_panel_figure(result: Result) -> Figure:
     touch = scene.touches[0]
     rate = touch.mean_rate
     words = "no mean rate: not every switch closed" if rate is None else f"mean rate {1e3 * rate:.4g} mm/s"
-    words = f"{touch.tissue} at {_rate(touch.rate)} — {words}"
+    which = f"touch 1 of {len(scene.touches)}, " if len(scene.touches) > 1 else ""
+    words = f"{which}{touch.tissue} at {_rate(touch.rate)}; {words}"
     with result_figure(result, (9.4, 3.7), below=words, title_size=TITLE_SIZE) as figure:
         probe, record = figure.subplots(1, 2, width_ratios=(1.1, 1))
         _draw_probe(probe, scene.switch_sides, touch)
@@ -151,11 +152,11 @@ def _draw_curve(axis: Axes, result: Result, curve: Curve, style: tuple[str, str,
     depth, force = (np.array([values[name] for values in steps]) for name in ("depth", "force"))
     loading = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
     axis.plot(1e3 * depth[loading], force[loading], line, color=colour, label=curve.name)
-    scene = result.scene_as(SwitchProbeScene)
-    heights = 1e3 * np.array(scene.heights)
-    for touch in scene.touches:
+    time = np.array([values["time"] for values in steps])
+    for touch in result.scene_as(SwitchProbeScene).touches:
         if (touch.tissue, touch.rate) == (curve.tissue, curve.rate):
-            at = [heights[closing.switch - 1] for closing in touch.closings]
+            # where the probe was then: beside a tissue that yields, far deeper than the height of the switch
+            at = 1e3 * np.interp([closing.time for closing in touch.closings], time[loading], depth[loading])
             axis.plot(at, [closing.force for closing in touch.closings], mark, color=colour, markersize=4)
 
 

@@ -195,7 +195,8 @@ class TrialReport:
         ):
             rates = [float(cell[name] or 0.0) for cell in self._cells]
             if any(rates):
-                yield f"up to {max(rates):.0%} of the trials of {np.count_nonzero(rates)} of {len(rates)} combinations {words}"
+                share, few = f"{100 * max(rates):.0f} %", np.count_nonzero(rates)
+                yield f"up to {share} of the trials of {few} of {len(rates)} combinations {words}"
 
 
 def _rows(columns: tuple[Array, ...], trigger: int) -> Iterator[StepRecord]:

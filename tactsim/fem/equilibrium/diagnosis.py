@@ -41,7 +41,7 @@ def collapsed_in_words(body: Body, kinematics: Kinematics, unknowns: Array) -> s
     element = int(kept.argmin())
     if kept[element] >= COLLAPSED or asked[element].min() <= 0:
         return None
-    return f"{element_in_words(body, element)} has kept {kept[element]:.0%} of its volume"
+    return f"{element_in_words(body, element)} has kept {100 * kept[element]:.0f} % of its volume"
 
 
 def not_finite_in_words(

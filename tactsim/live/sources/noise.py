@@ -36,5 +36,5 @@ def solution_noise(forces: Array) -> ReadingNoise:
     largest = float(np.abs(np.where(np.isfinite(forces), forces, 0.0)).max(initial=0.0))
     if largest == 0:
         return RESOLVED
-    words = f"{MESH_SHARE:.1%} of the largest force, the error of the mesh of a simulation, which no sensor has read"
+    words = f"{100 * MESH_SHARE:.1f} % of the largest force, the error of the mesh of a simulation, which no sensor has read"
     return ReadingNoise(MESH_SHARE * largest, words)

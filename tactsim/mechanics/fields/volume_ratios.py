@@ -42,8 +42,9 @@ class VolumeRatios:
         if self.worst <= POOR_SHARE:
             return []
         return [
-            f"{self.worst:.2%} of the volume misses the volume that its pressure asks for by more than {POOR_RATIO:.0%} (local "
-            f"volume ratios of {self._worst_in_words}): the mesh is too coarse there; {self._finer}"
+            f"{100 * self.worst:.2f} % of the volume misses the volume that its pressure asks for by more than "
+            f"{100 * POOR_RATIO:.0f} % (local volume ratios of {self._worst_in_words}): the mesh is too coarse "
+            f"there; {self._finer}"
         ]
 
 

@@ -108,7 +108,9 @@ class ContactQuality:
             return []
         points = f"{self._touching} points" if self._touching > 1 else "a single point"
         most = next(error for count, error in SMALL_CONTACTS.items() if self._touching <= count)
-        return [f"the contact is no wider than {points} of the surface; its force may be off by {most:.0%}: {self._finer}"]
+        return [
+            f"the contact is no wider than {points} of the surface; its force may be off by {100 * most:.0f} %: {self._finer}"
+        ]
 
     def warnings(self, steps: Sequence[StepRecord]) -> list[str]:
         """Warnings about the accepted steps: volumes that are not kept, and material that left strong ellipticity."""
@@ -119,6 +121,6 @@ class ContactQuality:
         share = steps[-1].values["unstable_volume_fraction"]
         return [
             *kept,
-            f"{share:.1%} of the volume left strong ellipticity, first at {self._reached(unstable[0])}: "
+            f"{100 * share:.1f} % of the volume left strong ellipticity, first at {self._reached(unstable[0])}: "
             "there the answer depends on the mesh; take a stable material set",
         ]

@@ -52,7 +52,8 @@ def _fault(step: StepRecord, tolerance: float) -> str | None:
     if error > LARGEST_FORCE_ERROR:
         enough = sufficient_tolerance(values["max_penetration"], tolerance, error)
         return (
-            f"penetration takes away {error:.2%} of the force by its estimate; allowed: {LARGEST_FORCE_ERROR:.1%}; "
+            f"penetration takes away {100 * error:.2f} % of the force by its estimate; allowed: "
+            f"{100 * LARGEST_FORCE_ERROR:.1f} %; "
             f"take penetration_tolerance: at most {format_quantity(enough, 'm')}"
         )
     return None

@@ -27,7 +27,8 @@ from tactsim.units import format_quantity
 
 RUN_COLOUR, PRINTED_COLOURS = "#1f4e79", ("#b8540a", "#8a1c7c", "#2e7d32")
 LINE_STYLES = ("C0-", "C1-.", "C2:", "C3--", "C4-", "C5-.", "C6:", "C7--", "C8-", "C9-.")
-POINTS_SHOWN = 40
+POINTS_SHOWN, FEW_POINTS = 40, 12
+"""Points of a curve that are shown, and up to how many those of a line are marked, which is straight between them."""
 MARKERS = ("o", "s", "^", "v", "D")
 LETTERS_OF_TITLE, LETTERS_OF_LEGEND = 11.5, 15.0  # that an inch holds
 LETTERS_BESIDE = 30
@@ -139,7 +140,7 @@ def _draw_curves(axis: Axes, panel: dict[str, Any], along: float) -> None:
             every = max(1, x.size // POINTS_SHOWN)
             axis.plot(x, y, marker, color=colour, markersize=4, markevery=every, label=curve["label"])
         else:
-            axis.plot(x, y, next(styles), label=curve["label"])
+            axis.plot(x, y, next(styles), marker="." if x.size <= FEW_POINTS else "", label=curve["label"])
     axis.set_yscale("log" if panel.get("logarithmic") else "linear")
     if panel.get("logarithmic"):
         label_decades(axis)
@@ -168,7 +169,7 @@ def maps_figure(data: dict[str, Any]) -> Figure:
         axes[0, place].set_title(column["title"], fontsize=9)
     for axis, side in zip(axes[:, 0], JAWS, strict=True):
         axis.set_ylabel(f"{side} jaw, row")
-    write_title(figure, f"{data['title']} in {data['unit']}")
+    write_title(figure, f"{data['title']} in {data['unit']}; colours from 0 to the largest of each column")
     return figure
 
 

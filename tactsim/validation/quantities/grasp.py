@@ -276,7 +276,10 @@ def tactile_pictures(
     largest = {words: float(image.max()) for words, image in images.items()}
     common = max(largest.values()) if pictures == "layers" else None  # layers are compared, views are not
     panels = [
-        {"title": words, "grey": band_intensities(image, common or largest[words] or 1.0).tolist()}
+        {
+            "title": f"{words}; white is {format_quantity(float(f'{common or largest[words]:.3g}'), 'N')}",
+            "grey": band_intensities(image, common or largest[words] or 1.0).tolist(),
+        }
         for words, image in images.items()
     ]
     return {"form": "images", "title": title, "axis": "pixel", "panels": panels}

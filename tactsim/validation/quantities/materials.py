@@ -279,7 +279,7 @@ def uniaxial_fits(title: Title, material: SetName, forms: tuple[str, ...]) -> Da
     for form in forms:
         fit = fitted(material, form)
         model = uniaxial_nominal_stress(fit.material, stretch)
-        label = f"{form}: max {fit.max_relative_error:.1%}, rms {fit.rms_relative_error:.1%}"
+        label = f"{form}: max {100 * fit.max_relative_error:.1f} %, rms {100 * fit.rms_relative_error:.1f} %"
         stresses.append(series(label, stretch, model))
         errors.append(series(label, stretch, 100 * (model / stress - 1)))
     panels = [panel("nominal stress", "Pa", stresses), panel("relative error in %", "", errors)]

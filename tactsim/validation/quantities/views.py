@@ -181,7 +181,10 @@ def section_pictures(
     pictures = [section_image(np.array(upper), np.array(lower), shape) for shape in shapes]
     brightest = max(float(picture.max()) for picture in pictures)
     panels = [
-        {"title": f"{shape[0]} x {shape[1]} pixels", "grey": band_intensities(picture, brightest).tolist()}
+        {
+            "title": f"{shape[0]} × {shape[1]} pixels; white is the largest intensity",
+            "grey": band_intensities(picture, brightest).tolist(),
+        }
         for shape, picture in zip(shapes, pictures, strict=True)
     ]
     return {"form": "images", "title": title, "axis": "column", "panels": panels}

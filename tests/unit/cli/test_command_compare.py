@@ -13,7 +13,7 @@ from scenes import grasp_scene
 
 from tactsim.cli import main
 from tactsim.cli.command_compare import _name_of, _unit_of, report
-from tactsim.cli.figures.comparison import comparison_figure
+from tactsim.cli.figures.comparison import FEW_STEPS, comparison_figure
 from tactsim.errors import InputError
 from tactsim.experiments.annulus.closed_form import ClosedForm
 from tactsim.interfaces.taxel_layout import TaxelLayout
@@ -370,3 +370,21 @@ def test_a_key_with_the_name_of_a_quantity_has_another_head() -> None:
     assert comparison.inputs == {"experiment.displacement [mm]": ("8", "4"), "recess [mm]": ("8", "4")}
     assert [column.head for column in comparison.columns] == ["displacement [mm]"]
     assert comparison_figure(results, comparison).get_suptitle() == "2 results that differ in displacement, recess"
+
+
+def test_each_of_a_few_steps_is_marked() -> None:
+    """Two grasps of two steps were two straight lines, as if the force grew in proportion."""
+    results = {f"run{number}": pressed("icf_stable", None, size=1e-3 * number) for number in range(2)}
+    few = {name: replace(result, steps=result.steps[:2]) for name, result in results.items()}
+    for shown, marked in ((few, None), (results, None if len(results["run0"].steps) <= FEW_STEPS else [-1])):
+        lines = comparison_figure(shown, compared(shown, lambda experiment, path: "", _name_of)).axes[0].lines
+        assert [line.get_markevery() for line in lines[:2]] == [marked] * 2
+        assert all(line.get_marker() for line in lines[:2]) == (marked is None)
+
+
+def test_no_figure_is_written_of_results_that_share_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    made = {name: replace(grasped(1, [[0.1]]), units={}, quantities={name: Quantity(2.0, "N", "")}) for name in ("one", "two")}
+    report(made, tmp_path / "out")
+    assert not (tmp_path / "out" / "comparison.png").exists()
+    assert (tmp_path / "out" / "comparison.csv").exists()
+    assert "no figure, for no two of the results share a number" in capsys.readouterr().out

@@ -100,7 +100,7 @@ def test_a_curve_is_fitted_and_gives_lines_for_a_case(
 ) -> None:
     assert main(["material", "--fit", str(curve), "--form", "2-parameter", "--save", str(tmp_path / "fit.png")]) == 0
     first, second, *_ = capsys.readouterr().out.splitlines()
-    assert first.startswith("2-parameter: largest relative error 0.0%")
+    assert first.startswith("2-parameter: largest relative error 0.0 %")
     assert (tmp_path / "fit.png").read_bytes().startswith(b"\x89PNG")
     case = load_case(stack_file, [f"experiment.skin={second.strip()}"])
     assert isinstance(case.experiment, Stack)
@@ -115,9 +115,9 @@ def test_a_relaxation_gives_the_line_of_a_material(stack_file: Path, tmp_path: P
     assert main(["material", "--relaxation", str(held), "--rise", "0.2 s"]) == 0
     first, second, third = capsys.readouterr().out.splitlines()
     assert (
-        "95% intervals: fractions 0.316 to 0.316" in third
+        "95 % intervals: fractions 0.316 to 0.316" in third
     )  # the response at once, of a rise of 0.2 s, is 3.2 kPa of relaxing part
-    assert first.startswith("1 relaxation times: largest relative error 0.0%")
+    assert first.startswith("1 relaxation times: largest relative error 0.0 %")
     case = load_case(stack_file, [f"experiment.skin={{kind: neo_hookean, c10: 3 kPa, {second.strip()}}}"])
     assert case.experiment.skin.relaxation.times == pytest.approx([0.1 / 0.693147], rel=1e-4)  # halves in 0.1 s
 

@@ -144,7 +144,7 @@ def test_a_table_in_words_has_a_row_for_every_class_that_occurs() -> None:
     content = record(table, 2, {"estimator": "hypotheses", "noise": 1e-3})
     text = as_text(content, {})
     assert verdict(content) == "2 of 3 grasps named right"
-    assert "| lump | 1 | 1 | 0 | 0 | 0 | 50% |" in text
+    assert "| lump | 1 | 1 | 0 | 0 | 0 | 50 % |" in text
     assert "| none | " not in text.split("---")[-1]
     assert "2 samples belong to no class" in text
     assert max(map(len, (line for line in text.splitlines() if line.startswith("|")))) < 80, "it fits a terminal"

@@ -254,6 +254,7 @@ def test_the_title_covers_no_estimator_of_the_legend() -> None:
     (legend,), title = figure.legends, figure._suptitle
     assert len(legend.get_texts()) == len(names)
     assert not legend.get_window_extent().overlaps(title.get_window_extent())
+    assert "the estimators stand side by side" in figure.get_suptitle().replace("\n", " ")
 
 
 def test_a_noise_that_nobody_chose_says_where_it_comes_from():

@@ -59,7 +59,7 @@ def test_the_shear_modulus_is_known_where_its_parts_are_not():
     assert high - low < 6e3
     assert "does not determine c10 and c01 one by one" in fit.warnings[0]
     assert "tension alone" in fit.warnings[-1]
-    assert "95% intervals: c10" in str(fit)
+    assert "95 % intervals: c10" in str(fit)
 
 
 def test_a_form_that_misses_the_curve_is_said_to():
@@ -89,7 +89,7 @@ def test_a_curve_of_one_side_says_how_far_forms_differ_on_the_other():
     fits = [fit_uniaxial(curve, form) for form in ("stable", "stable-c20")]
     [words] = spread_of_forms(fits)
     assert "tension alone" in words
-    assert "at a stretch of 0.7 the stable fits agree within 0.1%" in words
+    assert "at a stretch of 0.7 the stable fits agree within 0.1 %" in words
     assert spread_of_forms([]) == ()
 
 

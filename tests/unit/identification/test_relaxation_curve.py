@@ -128,5 +128,5 @@ def test_a_part_that_noise_splits_in_two_is_named() -> None:
     low, high = fit.equilibrium_interval
     assert low < 0.5 < high  # what stays is known all the same
     assert high - low < 0.05
-    assert "95% intervals: fractions" in str(fit)
+    assert "95 % intervals: fractions" in str(fit)
     assert ts.fit_relaxation(noisy(1, 0.0005)).warnings == ()

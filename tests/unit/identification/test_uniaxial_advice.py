@@ -47,7 +47,7 @@ def test_three_constants_are_advised_where_two_do_not_follow() -> None:
 def test_fits_that_agree_on_the_other_side_are_said_to() -> None:
     curve = curve_of(PLAIN, TENSION, 0.001)
     (words,) = spread_of_forms([fit_uniaxial(curve, form) for form in FORMS])
-    assert "at a stretch of 0.7 the stable fits agree within 0.4%" in words
+    assert "at a stretch of 0.7 the stable fits agree within 0.4 %" in words
     assert "factor" not in words
 
 

@@ -411,7 +411,7 @@ def test_a_small_loss_over_a_soft_lump_is_found_and_the_estimate_says_on_which_n
     choice, reference = BY_NAME["thesis with reference"], Reference.open([str(plain)])
     stated = estimated(scene, frame_readings(scene, frame, choice, reference), choice, reference)
     assert stated["present"]
-    assert "0.6% of the largest force" in stated["noise"]
+    assert "0.6 % of the largest force" in stated["noise"]
     given = estimated(scene, frame_readings(scene, frame, choice, reference, 29e-3), choice, reference)
     assert not given["present"]
     noise = "Noise of 29 mN on each taxel (one standard deviation): as given by --noise; start with --noise FORCE for another"

@@ -30,9 +30,9 @@ def pressed(displacement: float, body: str = "sphere"):
     ("displacement", "words", "error"),
     [
         (1e-8, "no point of the surface has touched", 1.0),
-        (1e-7, "no wider than a single point of the surface; its force may be off by 100%", SMALL_CONTACTS[1]),
-        (1e-6, "no wider than 2 points of the surface; its force may be off by 25%", SMALL_CONTACTS[2]),
-        (6e-6, "no wider than 4 points of the surface; its force may be off by 10%", SMALL_CONTACTS[4]),
+        (1e-7, "no wider than a single point of the surface; its force may be off by 100 %", SMALL_CONTACTS[1]),
+        (1e-6, "no wider than 2 points of the surface; its force may be off by 25 %", SMALL_CONTACTS[2]),
+        (6e-6, "no wider than 4 points of the surface; its force may be off by 10 %", SMALL_CONTACTS[4]),
         (5e-5, None, 0.01),
     ],
 )

@@ -52,6 +52,7 @@ def test_the_table_of_a_confusion_is_a_figure() -> None:
 
 def test_numbers_in_words_have_a_minus_sign_and_words_keep_their_hyphens() -> None:
     assert with_minus("in this cut -1.01 to 23.2 kPa, B1-A, 1e-3") == "in this cut −1.01 to 23.2 kPa, B1-A, 1e-3"
+    assert with_minus("F = 20.94 C - 0.132 (thesis; C in mS) - a line") == "F = 20.94 C − 0.132 (thesis; C in mS) - a line"
 
 
 def test_the_foot_of_an_interrupted_run_says_so_once() -> None:

@@ -8,6 +8,7 @@ import pytest
 
 from tactsim.errors import UnknownName
 from tactsim.validation.figures import validation_figure
+from tactsim.validation.figures.forms import curves_figure, maps_figure
 
 LINE = {"label": "printed", "value": 400.0}
 BARS = [{"label": "default", "values": [8e4, 1e5]}, {"label": "friction 0", "values": []}]
@@ -56,3 +57,16 @@ def test_a_bracket_without_any_run_is_still_drawn() -> None:
 def test_an_unknown_form_is_refused() -> None:
     with pytest.raises(UnknownName, match="ranges"):
         validation_figure({"form": "range"})
+
+
+def test_each_of_a_few_points_of_a_line_is_marked() -> None:
+    """Kinks between eight computed points looked like those of the curve."""
+    many = {**CURVE, "x": [0.1 * k for k in range(40)], "y": [1.0] * 40}
+    figure = curves_figure({**CURVES, "panels": [{**PANEL, "curves": [CURVE, many]}]})
+    assert [line.get_marker() for line in figure.axes[0].lines] == [".", ""]
+
+
+def test_maps_say_that_each_column_has_colours_of_its_own() -> None:
+    column = {"title": "a", "upper": [[1.0, 2.0]], "lower": [[0.5, 1.0]]}
+    figure = maps_figure({"title": "Forces", "unit": "N", "columns": [column, column]})
+    assert "colours from 0 to the largest of each column" in figure.get_suptitle().replace("\n", " ")

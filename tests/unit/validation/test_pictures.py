@@ -64,6 +64,7 @@ def corner_reads() -> Inputs:
 
 def test_views_show_a_lump_where_it_lies() -> None:
     data = tactile_pictures(corner_reads(), "t", "s", "views", shape=(21, 31))
+    assert all("; white is " in panel["title"] for panel in data["panels"])
     front, left, top = (np.array(panel["grey"]) for panel in data["panels"])
     assert front.max() == left.max() == top.max() == 255.0
     assert front[:10].max() == 255.0  # upper half, at the right

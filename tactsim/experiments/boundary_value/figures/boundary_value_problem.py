@@ -161,10 +161,10 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
     shown = weights > 0
     low, high = robust_limits(values[shown], weights[shown])
     drawn.set_clim(low, high)
-    bar = axis.figure.colorbar(
-        drawn, ax=axis, extend=extension(values[shown], (low, high)), location="bottom", shrink=0.6, aspect=32
-    )
-    bar.set_label(f"von Mises stress in {unit}")
+    beyond = extension(values[shown], (low, high))
+    bar = axis.figure.colorbar(drawn, ax=axis, extend=beyond, location="bottom", shrink=0.6, aspect=32)
+    limits = "" if beyond == "neither" else "\n(colours: 1st to 99th percentile of what is seen)"
+    bar.set_label(f"von Mises stress in {unit}, one value for each element{limits}")
     bar.outline.set_linewidth(0.5)
     axis.set_title(words, loc="left")
     _framed(axis, dimension)

@@ -36,7 +36,7 @@ def draw_course(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
         name = next(iter(asked))
         factor, unit = scale_of(_most(asked[name]), scene.asked[name])
         axis.plot(time, factor * asked[name], MARKS[0], color=COLOURS[0], markersize=3, label="\n".join(asked))
-        axis.set_ylabel(f"{name} in {unit}" if len(asked) == 1 else f"in {unit}")
+        axis.set_ylabel(f"{name} in {unit}" if len(asked) == 1 else f"value in {unit}")
         if len(asked) > 1:
             axis.legend(fontsize=7)
     else:

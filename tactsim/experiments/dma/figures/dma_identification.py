@@ -77,10 +77,12 @@ def _draw_curves(axis: Axes, result: Result, part: str) -> None:
         )
         axis.plot(frequency, centre, line, color=colour, zorder=4 + order, label=words)
     true = result.history_values(f"true_{part}_compliance")
-    if np.isfinite(true).any():
+    synthetic = bool(np.isfinite(true).any())
+    if synthetic:
         axis.plot(frequency, PER_MEGAPASCAL * true, ":", color=TRUE_COLOUR, zorder=6, label="true model")
     measured = PER_MEGAPASCAL * result.history_values(f"measured_{part}_compliance")
-    axis.plot(frequency, measured, "o", color=DATA_COLOUR, markersize=4, zorder=7, label="data")
+    words = "synthetic data" if synthetic else "data"
+    axis.plot(frequency, measured, "o", color=DATA_COLOUR, markersize=4, zorder=7, label=words)
     axis.set(xscale="log", yscale="log")
     axis.set_title(f"{part} compliance", loc="left")
     axis.xaxis.set_major_locator(FixedLocator([tick for tick in TICKS if frequency.min() <= tick <= frequency.max()]))

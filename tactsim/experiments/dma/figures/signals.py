@@ -20,7 +20,8 @@ TRUE_LINE: dict[str, Any] = {"linestyle": ":", "linewidth": 1.2}
 def signals_figure(result: Result) -> Figure:
     """Signals at the lowest and at the highest frequency above; below the moduli with two standard errors, and the tangent."""
     scene = result.scene_as(DmaScene)
-    with result_figure(result, (10.0, 6.4), "Signals and moduli of a dynamic mechanical analysis") as figure:
+    below = "" if _true_modulus(result) is None else "Synthetic signals (points) and their fits (lines)"
+    with result_figure(result, (10.0, 6.4), "Signals and moduli of a dynamic mechanical analysis", below=below) as figure:
         axes = figure.subplots(2, 2)
         for axis, shown in zip(axes[0], scene.signals, strict=True):
             _draw_signals(axis, shown)

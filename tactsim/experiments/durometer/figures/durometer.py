@@ -12,8 +12,11 @@ from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.experiments.indentation.figures.indentation import section_beside
 from tactsim.plotting.canvas import SingleFigure, scale_of
 from tactsim.results import Result
+from tactsim.units import format_quantity
 
 TISSUE_COLOUR, SPRING_COLOUR, HERTZ_COLOUR = "#1f4e79", "#b8540a", "#4d9221"
+PAST = 1.01
+"""Depth of the section over that at the reading from which on it is not that of the reading."""
 ROOM = 1.25
 """The force axis ends at this many times the larger of spring and tissue."""
 
@@ -25,7 +28,15 @@ class DurometerFigures(SingleFigure):
 
     def figure(self, result: Result) -> Figure:
         """Section (if the result has fields) and forces over the depth."""
-        return section_beside(result, [_draw_balance], "Durometer")
+        return section_beside(result, [_draw_balance], "Durometer", _past_the_reading(result))
+
+
+def _past_the_reading(result: Result) -> str:
+    """Where the reading is if the section is drawn farther down."""
+    if "depth" not in result.quantities or not result.frames:
+        return ""
+    depth = float(result.quantities["depth"].value)
+    return f"past the reading, which is at {format_quantity(depth, 'm')}" if result.frames[-1].time > PAST * depth else ""
 
 
 def _draw_balance(axis: Axes, result: Result) -> None:

@@ -62,7 +62,7 @@ def _equation(result: Result) -> str:
     """The line in the form that the thesis prints, or how many there are."""
     slope, intercept = (PER_SIEMENS * np.atleast_1d(result.quantities[name].value) for name in ("slope", "intercept"))
     if slope.size > 1:
-        return f"lines of {slope.size} sensors, F = {1 / slope.max():.2f} C to {1 / slope.min():.2f} C (N, mS)"
+        return f"lines of {slope.size} sensors, of {1 / slope.max():.2f} to {1 / slope.min():.2f} N/mS"
     return f"F = {1 / slope[0]:.2f} C {'−' if intercept[0] >= 0 else '+'} {abs(intercept[0] / slope[0]):.3f} (N, mS)"
 
 

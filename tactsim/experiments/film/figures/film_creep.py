@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from textwrap import fill
 from typing import Literal
 
 import numpy as np
@@ -9,7 +10,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from tactsim.experiments.film.figures.film_test import COEFFICIENTS, coefficient_axes, finish_coefficients
+from tactsim.experiments.film.figures.film_test import COEFFICIENTS, LINE_LENGTH, coefficient_axes, finish_coefficients
 from tactsim.experiments.film.scene import FilmCreepScene
 from tactsim.plotting.canvas import SingleFigure, despined, result_figure
 from tactsim.results import Result
@@ -31,6 +32,8 @@ class FilmCreepFigures(SingleFigure):
             _draw_coefficients(coefficients, result)
             for axis in (creep, coefficients):
                 despined(axis)
+            if result.assumptions:  # what the intervals are of, and whether the data are synthetic
+                figure.supxlabel(fill("; ".join(result.assumptions), LINE_LENGTH), x=0.01, ha="left", fontsize=8.5)
         return figure
 
 
@@ -45,7 +48,7 @@ def _draw_creep(axis: Axes, result: Result) -> None:
         axis.plot(time, PER_CENT * np.array(test.strain), ".", color=colour, markersize=2.0, alpha=0.5)
         axis.plot(time, PER_CENT * (stress / values["instantaneous"] + delayed), color=colour, label=f"{values['force']:.3g} N")
     axis.set(xlabel="time in s", ylabel="strain in %", ylim=(0, None))
-    axis.set_title("creep, dots, and fits, lines", loc="left")
+    axis.set_title("creep (dots) and fits (lines)", loc="left")
     axis.legend(loc="lower right", ncols=2)
 
 
@@ -60,5 +63,5 @@ def _draw_coefficients(axis: Axes, result: Result) -> None:
             ends = np.array([0.0, forces.max()])
             axes[name].plot(ends, slope * ends + intercept, "-", color=colour, linewidth=1)
     axis.set(xlim=(0, None))
-    axis.set_title("coefficients and their lines", loc="left")
+    axis.set_title("coefficients, their intervals and lines", loc="left")
     finish_coefficients(axes)

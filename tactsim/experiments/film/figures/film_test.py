@@ -18,7 +18,7 @@ from tactsim.array import Array
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, plain_decades, result_figure
+from tactsim.plotting.canvas import Plot, despined, plain_decades, result_figure, with_minus
 from tactsim.results import Result
 
 DATA, LINE = "#1f4e79", "#b8540a"
@@ -26,8 +26,9 @@ LINE_LENGTH = 140
 """Letters of the line below the panels."""
 MOST_CURVES = 6
 """Forces whose creep is drawn."""
-SURFACE_TICKS = (0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 50, 100, 200, 500, 1000)
-"""Resistances in kilohms that are written beside the surface."""
+TICKS_OF_A_DECADE = ((1, 2, 5), (1, 1.5, 2, 3, 4, 5, 7), (1, 1.2, 1.4, 1.6, 1.8, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9))
+"""Of the resistances that are written beside the surface, ever closer."""
+FEWEST_TICKS = 3
 COEFFICIENTS = (
     ("instantaneous", "$E_0$", "#1f4e79", "-"),
     ("delayed", "$E_1$", "#b8540a", "--"),
@@ -62,29 +63,41 @@ def film_test_figure(result: Result, coefficients: Mapping[str, Sequence[float]]
         for axis in axes.flat:
             despined(axis)
         if result.assumptions:  # which line the film was identified to, and over what, which is not the line of these readings
-            figure.supxlabel(fill(result.assumptions[0], LINE_LENGTH), x=0.01, ha="left", fontsize=8.5)
+            figure.supxlabel(fill(with_minus(result.assumptions[0]), LINE_LENGTH), x=0.01, ha="left", fontsize=8.5)
     return figure
 
 
 def film_surface_figure(result: Result) -> Figure:
     """Resistance over force and time, thesis Fig. 2.10."""
-    with result_figure(result, (7.0, 5.5), below="Resistance over force and time") as figure:
+    words = "Resistance over force and time; edges: the forces and times of the case"
+    with result_figure(result, (7.0, 5.5), below=words) as figure:
         axis: Any = figure.add_subplot(projection="3d")
         forces, times = np.meshgrid(result.quantities["forces"].numbers, result.quantities["times"].numbers)
         kilohms = result.quantities["resistance"].numbers / 1e3
         norm, decades = LogNorm(float(kilohms.min()), float(kilohms.max())), np.log10(kilohms)
         colours = colormaps["viridis"](norm(kilohms))
         axis.plot_surface(forces, times, decades, facecolors=colours, linewidth=0.2, edgecolor="#444444", shade=False)
-        ticks = np.array([value for value in SURFACE_TICKS if kilohms.min() <= value <= kilohms.max()])
-        axis.set_zticks(np.log10(ticks), [f"{value:g}" for value in ticks])
+        ticks = _surface_ticks(float(kilohms.min()), float(kilohms.max()))
+        axis.set_zticks(np.log10(ticks), [f"{value:.3g}" for value in ticks])
         axis.set(xlabel="force in N", ylabel="time since the force began in s", zlabel="resistance in kΩ")
         axis.view_init(elev=25, azim=40)
         axis.set_box_aspect((1, 1, 0.75), zoom=0.95)
         bar = figure.colorbar(ScalarMappable(norm, "viridis"), ax=axis, shrink=0.6, aspect=24, pad=0.08)
         bar.set_label("resistance in kΩ")
-        bar.ax.yaxis.set_ticks(ticks, [f"{value:g}" for value in ticks])
+        bar.ax.yaxis.set_ticks(ticks, [f"{value:.3g}" for value in ticks])
         bar.ax.yaxis.set_minor_formatter(NullFormatter())
     return figure
+
+
+def _surface_ticks(low: float, high: float) -> Array:
+    """Round numbers between two others, as few as tell the scale; the ends themselves where no round ones lie between."""
+    decades = 10.0 ** np.arange(np.floor(np.log10(low)), np.ceil(np.log10(high)) + 1)
+    for parts in TICKS_OF_A_DECADE:
+        ticks = np.outer(decades, parts).ravel()
+        ticks = ticks[(low <= ticks) & (ticks <= high)]
+        if len(ticks) >= FEWEST_TICKS:
+            return ticks
+    return np.array([low, high])
 
 
 def _draw_readings(resistance: Axes, conductance: Axes, result: Result) -> None:

@@ -54,6 +54,12 @@ def _draw_fractions(axis: Axes, result: Result) -> None:
     axis.legend(loc="lower left")
 
 
+def _power_of_ten(value: float) -> str:
+    """A number of two digits as it is printed, such as 1.8 × 10⁻⁶."""
+    digits, _, power = f"{value:.1e}".partition("e")
+    return f"{digits} × $10^{{{int(power)}}}$" if value else "0"
+
+
 def _draw_parts(axis: Axes, result: Result) -> None:
     readings = result.scene_as(ThermogravimetryScene).readings
     width = 0.8 / len(readings)
@@ -61,7 +67,7 @@ def _draw_parts(axis: Axes, result: Result) -> None:
         values = [reading.contributions[name] for name in SHORT]
         places = np.arange(len(values)) + (number - (len(readings) - 1) / 2) * width
         bars = axis.barh(places, values, width * 0.9, color=BARS[number % len(BARS)], label=reading.name)
-        axis.bar_label(bars, [f"{value:.1e}" if value else "0" for value in values], padding=3, fontsize=8)
+        axis.bar_label(bars, [_power_of_ten(value) for value in values], padding=3, fontsize=8)
     axis.set_yticks(np.arange(len(SHORT)), list(SHORT.values()))
     axis.set_xscale("log")
     most = max(max(reading.contributions.values()) for reading in readings)

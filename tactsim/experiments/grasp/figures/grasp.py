@@ -10,7 +10,7 @@ from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, VOLTAGE, has_taxels
 from tactsim.experiments.grasp.figures.history import draw_histories, has_history, panels
 from tactsim.experiments.grasp.figures.maps import MapsLayout, draw_maps, draw_plan
 from tactsim.experiments.grasp.figures.moment import shown_moment
-from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, loaded_taxels
+from tactsim.experiments.grasp.figures.parts import TITLE, WHERE, loaded_taxels, moment_of
 from tactsim.experiments.grasp.figures.section import draw_section, section_size
 from tactsim.experiments.grasp.figures.taxel_voltages import VOLTAGES, voltages_figure
 from tactsim.experiments.grasp.figures.view import VIEW, view_figure, view_rendering
@@ -48,7 +48,7 @@ class GraspFigures(ResultFigures):
         if has_taxels(result, VOLTAGE, history=True):
             drawings[VOLTAGES] = Plot(lambda: voltages_figure(result))
         if result.frames:
-            drawings[VIEW] = RenderedPlot(lambda: view_rendering(result), lambda rendering: view_figure(result, rendering))
+            drawings[VIEW] = RenderedPlot(lambda: view_rendering(moment), lambda rendering: view_figure(moment, rendering))
         return drawings
 
 
@@ -72,7 +72,7 @@ def section_figure(result: Result) -> Figure:
 def maps_figure(result: Result) -> Figure:
     """The pressure on every taxel of both jaws."""
     layout = MapsLayout.of(result.scene_as(GraspScene))
-    with result_figure(result, layout.size, TITLE, where=WHERE) as figure:
+    with result_figure(result, layout.size, TITLE, below=moment_of(result), where=WHERE) as figure:
         draw_maps(figure.subplots(layout.rows, layout.columns).tolist(), loaded_taxels(result))
     return figure
 

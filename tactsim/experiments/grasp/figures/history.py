@@ -21,6 +21,8 @@ from tactsim.results import Result
 MOST_TAXELS = 9
 ALIKE = 0.01
 """Taxels whose forces differ by less than this part of the largest one share a curve."""
+ROUND_OFF = 1e-6
+"""Part of the largest force of all taxels by which forces differ that are the same."""
 FROM_ZERO = 0.5
 """Curves that vary by more than from this part of their largest value to all of it are drawn from zero on."""
 FORCE_STYLES = {"upper": ("#0072b2", "-", "o"), "lower": ("#d55e00", "--", "s")}
@@ -82,7 +84,7 @@ def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
         course = _from_rest(along, factor * force)
         axis.plot(*course, line, marker=marker, markersize=3.5, color=colour, label=f"{side} jaw")
     axis.set_ylabel(f"force in {unit}")
-    axis.set_title("force of the tissue on each jaw, along z and away from the tissue", loc="left")
+    axis.set_title("force of the tissue on each jaw, outward along z; straight between the solved steps (marks)", loc="left")
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)
 
 
@@ -117,11 +119,11 @@ def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
     forces: dict[Taxel, Array] = {
         (JAWS[jaw], row, column): values[:, jaw, row, column] for jaw, row, column in np.ndindex(*values.shape[1:])
     }
-    shown = sorted(forces, key=lambda taxel: -float(np.abs(forces[taxel]).max()))[:MOST_TAXELS]
+    shown = _carrying_most({taxel: float(np.abs(force).max()) for taxel, force in forces.items()})
     factor, unit = _scale([forces[shown[0]]], "N")
     for group, colour, marker in zip(_alike(forces, shown), TAXEL_COLOURS, TAXEL_MARKERS, strict=False):
-        line = FORCE_STYLES[group[0][0]][1]
         in_order = sorted(group, key=lambda taxel: (JAWS.index(taxel[0]), *taxel[1:]))
+        line = FORCE_STYLES[in_order[0][0]][1]
         names = [f"{LETTERS[side]}{row + 1},{column + 1}" for side, row, column in in_order]
         rows = [" ".join(names[k : k + 3]) for k in range(0, len(names), 3)]
         style: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 3.5, "linewidth": 1.1}
@@ -129,6 +131,13 @@ def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
     axis.set_ylabel(f"force in {unit}")
     axis.set_title(f"the {len(shown)} of {len(forces)} taxels that carry most (row, column)", loc="left")
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)
+
+
+def _carrying_most(largest: Mapping[Taxel, float]) -> list[Taxel]:
+    """The taxels with the largest forces in N, and all that carry as much as the last: round-off is not to choose."""
+    order = sorted(largest, key=lambda taxel: -largest[taxel])
+    least = largest[order[:MOST_TAXELS][-1]] - ROUND_OFF * largest[order[0]]
+    return [taxel for taxel in order if largest[taxel] >= least]
 
 
 def _alike(forces: Mapping[Taxel, Array], shown: Sequence[Taxel]) -> list[list[Taxel]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
@@ -14,12 +15,19 @@ from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, LoadedTaxels, PressureScale, drawn_millimetre
+from tactsim.experiments.grasp.figures.parts import (
+    LETTERS,
+    TAXEL_COLOUR,
+    LoadedTaxels,
+    PressureScale,
+    drawn_millimetre,
+    named_lines,
+)
 from tactsim.experiments.grasp.figures.viewed import outline, true_bodies
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.solid import Solid
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on
+from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on, with_minus
 from tactsim.plotting.plane_cut import OUTER, interfaces
 from tactsim.results import Result
 
@@ -75,7 +83,7 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
         _draw_matrix(axis, grasp, side, scale)
         _draw_surroundings(axis, grasp.scene, side, bodies)
         factor, unit = grasp.force_scale
-        force = _three_digits(factor * grasp.forces[side].sum())
+        force = _digits(float(factor * grasp.forces[side].sum()), 3)
         axis.set_title(f"{side} jaw ({LETTERS[side]}): {force} {unit} on the taxels", loc="left")
         _seen_from_above(axis)
         axis.tick_params(length=2.5)
@@ -113,9 +121,11 @@ def draw_plan(axis: Axes, result: Result) -> None:
     _seen_from_above(axis)
 
 
-def _three_digits(value: float) -> str:
-    """A number with three digits that count, zeros at its end included."""
-    return f"{value:#.3g}".rstrip(".")
+def _digits(value: float, count: int) -> str:
+    """A number with some digits that count, zeros at its end included, and never with an exponent."""
+    rounded = float(f"{value:.{count}g}")
+    decimals = max(0, count - 1 - math.floor(math.log10(abs(rounded)))) if rounded else 0
+    return with_minus(f"{rounded:.{decimals}f}")
 
 
 def _seen_from_above(axis: Axes) -> None:
@@ -147,17 +157,17 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
             "path_effects": [withStroke(linewidth=2.2, foreground=colours(shade))],  # a rim: no line runs through letters
         }
         x, y = corner[0] + size / 2, corner[1] + size / 2
-        written = _three_digits(scale.factor * pressure)
+        written = _digits(scale.factor * pressure, 3)
         axis.text(x, y, f"{written} {scale.unit}", va="bottom", fontsize=large, fontweight="bold", **style)
-        force = f"{float(f'{per_newton * grasp.forces[side][row, column]:.2g}'):g}"
+        force = _digits(float(per_newton * grasp.forces[side][row, column]), 2)
         axis.text(x, y - 0.06 * size, f"{force} {force_unit}", va="top", fontsize=0.72 * large, **style)
     axis.add_collection(PatchCollection(squares, match_original=True, zorder=2))  # thousands one by one take a minute
     named: dict[str, Any] = {"fontsize": 7, "color": "#57606a"}
     right, back = _extent(grasp.scene, side)[1] + BESIDE * drawn_millimetre(grasp.scene.size)
     every = layout.pitch * _inches_per_metre(grasp.scene, side) > NAME
-    for number in _named(layout.rows, every=every):
+    for number in named_lines(layout.rows, every=every and layout.rows <= MOST_NAMED):
         axis.text(right, rows[number - 1].mean(), f"row {number}", ha="left", va="center", **named)
-    for number in _named(layout.columns, every=every):
+    for number in named_lines(layout.columns, every=every and layout.columns <= MOST_NAMED):
         axis.text(columns[number - 1].mean(), back, f"col. {number}", ha="center", va="bottom", **named)
 
 
@@ -169,11 +179,6 @@ def _letters(scene: GraspScene, side: str) -> float:
 def _inches_per_metre(scene: GraspScene, side: str) -> float:
     low, high = _extent(scene, side)
     return MapsLayout.of(scene).longer_side * 1e3 / float(np.max(high - low))
-
-
-def _named(count: int, *, every: bool) -> list[int]:
-    """Numbers of the rows or columns that are named: all of a few if there is room for every one, else the first and the last."""
-    return list(range(1, count + 1)) if count <= (MOST_NAMED if every else 1) else [1, count]
 
 
 def _extent(scene: GraspScene, side: str) -> tuple[Array, Array]:

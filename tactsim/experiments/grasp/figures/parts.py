@@ -102,6 +102,11 @@ def moment_of(result: Result) -> str:
     return result.scene.moment if isinstance(result.scene, SimulatedGrasp) else ""
 
 
+def named_lines(count: int, *, every: bool) -> list[int]:
+    """Numbers of the rows or columns of taxels that are named: all if there is room, else the first and the last."""
+    return list(range(1, count + 1)) if every else sorted({1, count})
+
+
 def inclusions_of(frame: FieldFrame) -> dict[int, Array]:
     """Nodes of every inclusion, by its number."""
     regions, elements = regions_of(frame), frame.cells["tetra10"]

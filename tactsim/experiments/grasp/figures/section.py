@@ -88,14 +88,13 @@ def draw_section(axis: Axes, result: Result) -> None:
         _draw_regions(axis, cut)
     _draw_outlines(axis, cut, result)
     limits = _window(cut, scene)
-    for side in JAWS:
-        _draw_jaw(axis, scene, side, limits, plane)
+    drawn = [_draw_jaw(axis, scene, side, limits, plane) for side in JAWS]
     along = "yx"[plane.across]
     axis.set(xlim=limits[0], ylim=limits[1], aspect="equal", xlabel=f"{along} in mm", ylabel="z (height) in mm")
     middle = scene.named_inclusion(plane.inclusion) if plane.inclusion else "the block"
     place = f"cut at {'xy'[plane.across]} = {1e3 * plane.level:.3g} mm through the middle of {middle}"
     shown = ("\n" if moment_of(result) else "; ") + ending(result) if result.steps else ", at rest"
-    axis.set_title(place + shown, loc="left")
+    axis.set_title(place + shown + ("" if any(drawn) else "\nno taxel is cut"), loc="left")
     despined(axis)
 
 
@@ -160,8 +159,10 @@ def _window(cut: PlaneCut, scene: GraspScene) -> tuple[tuple[float, float], tupl
 
 def _draw_jaw(
     axis: Axes, scene: GraspScene, side: str, limits: tuple[tuple[float, float], tuple[float, float]], plane: CuttingPlane
-) -> None:
-    """A jaw filled from its signed distance in the plane, its name, and marks of the taxels that the plane passes."""
+) -> bool:
+    """A jaw filled from its signed distance in the plane, its name, and marks of the taxels that the plane passes; whether it
+    passes any.
+    """
     jaw, place, across = scene.jaws[side], scene.place(side), plane.across
     middle, end = sum(limits[1]) / 2, limits[1][1 if side == "upper" else 0]
     along, height = np.meshgrid(np.linspace(*limits[0], GRID), np.linspace(min(middle, end), max(middle, end), GRID))
@@ -169,19 +170,20 @@ def _draw_jaw(
     points[1 - across], points[2], points[across] = 1e-3 * along.ravel(), 1e-3 * height.ravel(), plane.level
     distance = jaw.signed_distance(points - place[:, None])[0].reshape(along.shape)
     if distance.min() > 0:
-        return
+        return False
     axis.contourf(along, height, distance, levels=[-np.inf, 0.0], colors=["#c8ccd2"], zorder=3)
     axis.contour(along, height, distance, levels=[0.0], colors=["#30363d"], linewidths=1.1, zorder=3)
-    _draw_taxels(axis, scene, side, plane)
+    passed = _draw_taxels(axis, scene, side, plane)
     unit = drawn_millimetre(scene.size)
     edge = limits[1][1] - 0.3 * unit if side == "upper" else limits[1][0] + 0.3 * unit
     where: dict[str, Any] = {"ha": "left", "va": "top" if side == "upper" else "bottom"}
     left = 1e3 * (place[1 - across] - (jaw.depth if across == 0 else jaw.width) / 2)
     axis.text(max(left, limits[0][0]) + 0.6 * unit, edge, f"{side} jaw", fontsize=8, zorder=5, **where)
+    return passed
 
 
-def _draw_taxels(axis: Axes, scene: GraspScene, side: str, plane: CuttingPlane) -> None:
-    """Marks of the taxels of the row or column that the plane passes, named as in Fig. 6.3 of the thesis."""
+def _draw_taxels(axis: Axes, scene: GraspScene, side: str, plane: CuttingPlane) -> bool:
+    """Marks of the taxels of the row or column that the plane passes, named as in Fig. 6.3 of the thesis; if there is one."""
     across, jaw, place = plane.across, scene.jaws[side], scene.place(side)
     fixed = (plane.level - place[across]) / jaw.rotation[across, across]
     passed, height = scene.matrix.borders("xy"[across]), TAXEL_SHOWN * drawn_millimetre(scene.size)
@@ -201,3 +203,4 @@ def _draw_taxels(axis: Axes, scene: GraspScene, side: str, plane: CuttingPlane) 
             above: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7, "zorder": 5}
             normal = 2.2 * height * jaw.rotation[2, 2]
             axis.text(shown[1 - across].mean(), shown[2].mean() + normal, f"{LETTERS[side]}{row + 1},{column + 1}", **above)
+    return bool(len(hit))

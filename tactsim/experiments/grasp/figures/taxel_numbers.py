@@ -11,7 +11,7 @@ from matplotlib.colors import Normalize
 
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on, scale_of
+from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on, scale_of, with_minus
 
 PLACES = ((0.0, 0.0), (0.5, 0.0))
 """Lower left corners of the two maps in the axes."""
@@ -31,7 +31,7 @@ def draw_taxel_numbers(axis: Axes, grasp: ViewedGrasp) -> None:
         small.set_anchor("N")
         for (row, column), value in np.ndenumerate(signal):
             style: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": size, "color": ink_on(colours(norm(value)))}
-            small.text(column, row, f"{factor * value:.3g}", in_layout=False, **style)
+            small.text(column, row, with_minus(f"{factor * value:.3g}"), in_layout=False, **style)
         small.set_xticks(range(signal.shape[1]), [f"{k + 1}" for k in range(signal.shape[1])], fontsize=7)
         small.set_yticks(range(signal.shape[0]), [f"{k + 1}" for k in range(signal.shape[0])], fontsize=7)
         small.tick_params(length=0)

@@ -15,12 +15,15 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.estimate import EstimatedInclusion
 from tactsim.interfaces.readings import shown_change
 from tactsim.interfaces.solid import Solid
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
 from tactsim.results import Result
 
 SAMPLES = 40
 """Points along each side of an inclusion's bounds from which its outline in a view is traced."""
+APART = 1e-9
+"""Distance in m in plan from which on jaws are not above each other."""
 BARE_FORCES = (
     "The images of section 6.3 of the thesis, of the forces as read.",
     "Plain tissue shows the same bright bands: they are no lump.",
@@ -52,6 +55,12 @@ class ViewedGrasp:
     true: tuple[Solid, ...]
     estimates: tuple[EstimatedInclusion, ...] = ()
     findings: tuple[str, ...] = BARE_FORCES
+
+    @property
+    def taxels_in_words(self) -> str:
+        """Which taxels are drawn: of jaws that are not above each other those in the middle."""
+        places = np.array([self.scene.place(side)[:2] for side in JAWS])
+        return "taxels, midway between the jaws;" if np.ptp(places, axis=0).max() > APART else "taxels,"
 
 
 def viewed(result: Result) -> ViewedGrasp:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -18,7 +19,7 @@ from matplotlib.patheffects import withStroke
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.figures.parts import LETTERS, drawn_millimetre
+from tactsim.experiments.grasp.figures.parts import LETTERS, drawn_millimetre, moment_of, named_lines
 from tactsim.experiments.grasp.figures.taxel_numbers import draw_taxel_numbers
 from tactsim.experiments.grasp.figures.viewed import ViewedGrasp, estimated_bodies, outline
 from tactsim.interfaces.taxel_layout import JAWS
@@ -41,8 +42,8 @@ REGION_DASHES: Any = (0, (1.5, 1.5))
 """Of the line around where an estimated centre may lie."""
 INK, GREY = "#30363d", "#57606a"
 ESTIMATE = "#d1242f"
-MOST_NAMED = 8
-"""Taxels along a jaw up to which each is numbered."""
+MOST_NAMED, NAME = 8, 0.42
+"""Taxels along a jaw up to which they are numbered, and the least pitch in inches at which each has its name in the top view."""
 
 BEYOND = JAW + NUMBER + ROOM
 """Room above and below the block in the views that show the jaws, in `drawn_millimetre`."""
@@ -71,16 +72,23 @@ class View:
     summed: int
     what: str
 
-    @property
-    def force_scale(self) -> tuple[float, str]:
-        """Factor and unit in which the sums of forces are shown."""
-        return scale_of(float(self.image.max()), "N")
 
-    def pressure_scale(self, grasp: ViewedGrasp) -> tuple[float, str]:
-        """Factor from a sum in N to the mean pressure on the taxels that were summed, and the unit in which it is shown."""
-        over = 1 / (self.summed * grasp.scene.matrix.area)
-        factor, unit = scale_of(over * float(self.image.max()), "Pa")
-        return over * factor, unit
+@dataclass(frozen=True)
+class Scales:
+    """Factors and units in which every view shows the sums of forces, and the mean pressures on the taxels that were summed.
+
+    One for all: 0.9 N in one view and 900 mN in the next look like different sizes.
+    """
+
+    force: tuple[float, str]
+    pressure: tuple[float, str]
+
+    @classmethod
+    def of(cls, seen: Sequence[View], grasp: ViewedGrasp) -> Scales:
+        """Those in which the largest values of all views read well."""
+        forces = [float(view.image.max()) for view in seen]
+        pressures = [force / (view.summed * grasp.scene.matrix.area) for view, force in zip(seen, forces, strict=True)]
+        return cls(scale_of(max(forces), "N"), scale_of(max(pressures), "Pa"))
 
 
 def colour_table(levels: int) -> list[int]:
@@ -101,17 +109,20 @@ def views_figure(result: Result, grasp: ViewedGrasp) -> Figure:
     x, y, z = 1e3 * grasp.scene.size / drawn_millimetre(grasp.scene.size)
     scale = COLUMN / max(x, y)
     heights = max(TOP_ROW, scale * (y + 2 * ROOM)), float(np.clip(scale * (z + 2 * BEYOND), LOWER_ROW, HIGHEST))
-    with result_figure(result, (WIDTH, SURROUNDINGS + sum(heights)), "Three views of the grasp") as figure:
+    size, moment = (WIDTH, SURROUNDINGS + sum(heights)), moment_of(result)
+    with result_figure(result, size, "Three views of the grasp", below=moment) as figure:
         axes: Any = figure.subplots(2, 2, height_ratios=heights)
-        for axis, view in ((axes[1, 1], front), (axes[1, 0], left), (axes[0, 1], top)):
-            _draw(axis, view, grasp)
+        seen = {axes[1, 1]: front, axes[1, 0]: left, axes[0, 1]: top}
+        scales = Scales.of(list(seen.values()), grasp)
+        for axis, view in seen.items():
+            _draw(axis, view, grasp, scales)
         axes[1, 0].invert_xaxis()
         _legend(axes[0, 0], grasp)
     return figure
 
 
-def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
-    factor, _ = view.force_scale
+def _draw(axis: Axes, view: View, grasp: ViewedGrasp, scales: Scales) -> None:
+    factor, _ = scales.force
     norm = Normalize(0.0, max(factor * float(view.image.max()), 1e-12))
     extent = _extent(view, grasp)
     axis.imshow(
@@ -141,26 +152,28 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     low_x, high_x = min(0.0, extent[0]), max(size[view.horizontal], extent[1])
     axis.set(xlim=(low_x - room, high_x + room), ylim=(-beyond, size[view.vertical] + beyond), aspect="equal")
     right, above = (f"{'xyz'[along]} in mm" for along in (view.horizontal, view.vertical))
-    axis.set(xlabel="" if view.away == 2 else f"{right} (undeformed)", ylabel=above)
+    axis.set(xlabel=f"{right} (undeformed)", ylabel=above)
     axis.locator_params(nbins=MOST_INTERVALS)
     axis.set_title(view.what, loc="left")
     despined(axis)
-    _draw_scales(axis, view, grasp, norm)
+    _draw_scales(axis, view, grasp, norm, scales)
 
 
-def _draw_scales(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize) -> None:
+def _draw_scales(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize, scales: Scales) -> None:
     """The colours of a view: each sum of forces with the mean pressure on the taxels that were summed."""
     below = view.away != 2
     location = "bottom" if below else "right"
+    (force, force_unit), (pressure, pressure_unit) = scales.force, scales.pressure
     bar = axis.figure.colorbar(
         ScalarMappable(norm, PRESSURE_COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85
     )
-    (force, force_unit), (pressure, pressure_unit) = view.force_scale, view.pressure_scale(grasp)
+    over = pressure / (view.summed * grasp.scene.matrix.area)
     apart = "\n" if below else "  "
     bar.locator = MaxNLocator(nbins=MOST_INTERVALS)
-    bar.formatter = FuncFormatter(lambda value, _: f"{value:g}{apart}({float(f'{value * pressure / force:.2g}'):g})")
+    bar.formatter = FuncFormatter(lambda value, _: f"{value:g}{apart}({float(f'{value * over / force:.2g}'):g})")
     bar.update_ticks()
-    bar.set_label(f"{grasp.meaning} in {force_unit} (mean pressure in {pressure_unit})")
+    cut = "\nreadings below 0 count as 0" if (grasp.signal < 0).any() else ""
+    bar.set_label(f"{grasp.meaning} in {force_unit} (mean pressure in {pressure_unit}){cut}")
     bar.outline.set_linewidth(0.5)
 
 
@@ -207,12 +220,13 @@ def _draw_taxels(axis: Axes, grasp: ViewedGrasp) -> None:
         axis.add_collection(PatchCollection([squares[k] for k in np.flatnonzero(chosen)], hatch=hatch, **none))
     if max(valid.shape) <= MOST_NAMED:
         beside = 0.8 * drawn_millimetre(grasp.scene.size)
-        named: dict[str, Any] = {"fontsize": 7, "color": GREY, "zorder": 4}
+        named: dict[str, Any] = {"fontsize": 7, "color": GREY, "zorder": 9}
         named["bbox"] = {"boxstyle": "round,pad=0.1", "facecolor": "w", "edgecolor": "none", "alpha": 0.8}
-        for number, middle in enumerate(rows.mean(axis=1), 1):
-            axis.text(columns[-1, 1] + beside, middle, f"row {number}", ha="left", va="center", **named)
-        for number, middle in enumerate(columns.mean(axis=1), 1):
-            axis.text(middle, rows[-1, 1] + beside, f"col. {number}", ha="center", va="bottom", **named)
+        every = COLUMN / float(np.max(grasp.scene.size)) * grasp.scene.matrix.pitch > NAME
+        for number in named_lines(len(rows), every=every):
+            axis.text(columns[-1, 1] + beside, rows[number - 1].mean(), f"row {number}", ha="left", va="center", **named)
+        for number in named_lines(len(columns), every=every):
+            axis.text(columns[number - 1].mean(), rows[-1, 1] + beside, f"col. {number}", ha="center", va="bottom", **named)
 
 
 def _draw_jaws(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
@@ -257,16 +271,17 @@ def _legend(axis: Axes, grasp: ViewedGrasp) -> None:
     axis.axis("off")
     handles: list[Any] = [
         Line2D([], [], color=GREY, linewidth=0.8, linestyle=(0, (4, 3)), label="undeformed block; hatched: no taxel reads there"),
-        Line2D([], [], color=INK, linewidth=0.6, label="taxels, their sums in colour on the jaws"),
+        Line2D([], [], color=INK, linewidth=0.6, label=f"{grasp.taxels_in_words} their sums in colour on the jaws"),
     ]
     if not grasp.valid.all():
         handles.append(Rectangle((0, 0), 1, 1, fill=False, edgecolor=INK, linewidth=0.5, hatch="xxx", label="dead or saturated"))
     if grasp.true:
         handles.append(Line2D([], [], color="k", linewidth=1.1, linestyle="--", label="true inclusions"))
     if grasp.estimates:
-        handles.append(
-            Line2D([], [], color=ESTIMATE, marker="+", markersize=11, markeredgewidth=1.8, linestyle="", label="estimated")
-        )
+        sized = any(estimate.radius is not None for estimate in grasp.estimates)
+        plus: dict[str, Any] = {"marker": "+", "markersize": 11, "markeredgewidth": 1.8, "linewidth": 1.4}
+        words = "estimated centre and outline" if sized else "estimated centre"
+        handles.append(Line2D([], [], color=ESTIMATE, linestyle="-" if sized else "", label=words, **plus))
     if any(estimate.region is not None for estimate in grasp.estimates):
         words = "its centre lies in here with a probability of 90 %"
         handles.append(Line2D([], [], color=ESTIMATE, linewidth=1.1, linestyle=REGION_DASHES, label=words))

@@ -103,16 +103,18 @@ class PressedSection:
         axis.annotate(words, (x.mean(), z.mean()), (0.0, 3.0), textcoords="offset points", **style)
 
 
-def draw_contact_section(axis: Axes, result: Result, displacement: float = 0.0) -> None:
-    """The axisymmetric section of the last frame under the body at a displacement in m, both halves, elements on the left."""
+def draw_contact_section(axis: Axes, result: Result, displacement: float = 0.0, remark: str = "") -> None:
+    """The axisymmetric section of the last frame under the body at a displacement in m, both halves, elements on the left.
+
+    A ``remark`` stands below the words on the moment.
+    """
     section, scene = Section(result.frames[-1]), result.scene_as(PressedBodyScene)
     height = 1e3 * (scene.starting_height - displacement)
     half, bottom, top = _window(section, 1e3 * scene.body.contact_shape.reach, height)
     top = max(top, top_of_words(scene, height, half))
     shown = PressedSection(section, scene, height, ((-half, half), (bottom, top)), sides=(-1.0, 1.0), meshed=(-1.0,))
-    shown.draw(
-        axis, "radius in mm", f"{moment_in_words(result, displacement)} (elements shown on the left)", at_rest=result.at_rest
-    )
+    words = "\n".join(part for part in (f"{moment_in_words(result, displacement)} (elements shown on the left)", remark) if part)
+    shown.draw(axis, "radius in mm", words, at_rest=result.at_rest)
     axis.xaxis.set_major_formatter(lambda value, _: f"{abs(value):g}")
 
 

@@ -60,15 +60,15 @@ class IndentationFigures(PressedFigures):
         return section_beside(result, draw, f"Indentation by a rigid {scene.body.kind}")
 
 
-def section_beside(result: Result, draw: Sequence[Callable[[Axes, Result], None]], title: str) -> Figure:
-    """The section of the last frame, if there is one, and below each other the one or two curves that ``draw`` draws."""
+def section_beside(result: Result, draw: Sequence[Callable[[Axes, Result], None]], title: str, remark: str = "") -> Figure:
+    """The section of the last frame with a remark, if there is one, and below each other the one or two curves of ``draw``."""
     has_section, rows = bool(result.frames), len(draw)
     size = (11.0 if has_section else 6.0, 4.4 if rows == 1 else 5.8)
     with result_figure(result, size, title, where=after(result)) as figure:
         ratios = (1.5, 1) if has_section else None
         grid = figure.add_gridspec(rows, 1 + has_section, width_ratios=ratios, height_ratios=(1.6, 1)[:rows])
         if has_section:
-            draw_contact_section(figure.add_subplot(grid[:, 0]), result, result.frames[-1].time)
+            draw_contact_section(figure.add_subplot(grid[:, 0]), result, result.frames[-1].time, remark)
         for row, draw_one in enumerate(draw):
             draw_one(figure.add_subplot(grid[row, -1]), result)
     return figure

@@ -59,5 +59,5 @@ def _draw(axis: Axes, counts: Array, classes: Sequence[str]) -> None:
         axis.text(column, row, str(counts[rows[row], column]), ha="center", va="center", color=colour, fontsize=12)
     axis.set_xticks(range(len(names)), names)
     axis.set_yticks(range(len(rows)), [names[k] for k in rows])
-    axis.set(xlabel="estimated", ylabel="true")
+    axis.set(xlabel="estimated (colour: share of the true class)", ylabel="true")
     axis.tick_params(length=0)

@@ -24,8 +24,13 @@ def localized(result: Result) -> ViewedGrasp:
         grasp,
         valid=grasp.valid if scene.valid is None else np.array(scene.valid),
         estimates=tuple(estimate.inclusion() for estimate in scene.estimates),
-        findings=_findings(scene, result) if "present" in result.quantities else grasp.findings,
+        findings=(*_findings(scene, result), *_not_taken_off(scene)) if "present" in result.quantities else grasp.findings,
     )
+
+
+def _not_taken_off(scene: LocalizedGrasp) -> tuple[str, ...]:
+    """What was read, if that is not what is drawn."""
+    return ("Read off the forces as they are; drawn is their difference from the reference.",) if scene.reference_unused else ()
 
 
 def _contrast(result: Result) -> str:
@@ -50,7 +55,7 @@ def _findings(scene: LocalizedGrasp, result: Result) -> tuple[str, ...]:
     lines = [part for line in lines for part in wrap(line, LINE)]
     lines += [f"Estimated at {place}" for place in places]
     if "center_deviation" in quantities:
-        deviations = ", ".join(f"{1e3 * value:.2g}" for value in quantities["center_deviation"].numbers)
+        deviations = ", ".join(f"{1e3 * value:.{digits}f}" for value in quantities["center_deviation"].numbers)
         lines.append(f"± ({deviations}) mm, one standard deviation" + (", of the first" if len(places) > 1 else ""))
     else:
         lines.append(NO_ERROR if len(places) == 1 else NO_ERRORS)

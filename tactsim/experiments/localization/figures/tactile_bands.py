@@ -48,7 +48,9 @@ def bands_figure(result: Result) -> Figure:
         for axis, (words, levels) in zip(axes, pictures, strict=False):
             _draw(axis, levels, words)
         if section is not None:
-            _draw(axes[-1], band_intensities(section, float(section.max()) or 1.0), "between the arrays, the upper one above")
+            white = format_quantity(float(f"{section.max():.3g}"), "N")  # not that of the bands: readings of both arrays add up
+            words = f"between the arrays, the upper one above; white is {white}"
+            _draw(axes[-1], band_intensities(section, float(section.max()) or 1.0), words)
         axes[-1].set_xlabel("pixel")
     return figure
 

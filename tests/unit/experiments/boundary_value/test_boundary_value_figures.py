@@ -70,7 +70,7 @@ def test_the_picture_of_a_speck_ends_where_the_body_does() -> None:
     ("asked", "label", "largest"),
     [
         ({"force": "N"}, "force in kN", 2.0),
-        ({"force": "N", "force_at_end": "N"}, "in kN", 2.0),
+        ({"force": "N", "force_at_end": "N"}, "value in kN", 2.0),
         ({"force": "N", "slip": "m"}, "quantity / its largest magnitude", 1.0),
     ],
 )
@@ -84,3 +84,9 @@ def test_a_single_course_is_drawn_in_its_unit(asked: dict[str, str], label: str,
     assert axis.get_ylabel() == label
     (curve,) = [line for line in axis.lines if len(line.get_xdata()) == 2 and line.get_marker() == "."]
     assert np.max(curve.get_ydata()) == largest
+
+
+def test_the_bar_says_where_its_colours_end():
+    steep, even = ([one for one in axis.figure.axes if one is not axis] for axis in (drawn(1.0, 0.5), drawn(1.0, 0.0)))
+    assert steep[0].get_xlabel().endswith("one value for each element\n(colours: 1st to 99th percentile of what is seen)")
+    assert "percentile" not in even[0].get_xlabel()

@@ -114,7 +114,7 @@ def test_a_face_among_prescribed_ones_misses_the_share_of_its_edges(cells):
     )
     assert result["stress"].value == pytest.approx(modulus * shear, rel=1e-6)
     assert result["force"].value / (modulus * shear * SIDE) == pytest.approx(1 - 1 / (6 * cells), rel=1e-6)
-    assert [f"force: {1 / (6 * cells - 1):.1%} of the force on top is at edges" in one for one in result.warnings] == [True]
+    assert [f"force: {100 / (6 * cells - 1):.1f} % of the force on top is at edges" in one for one in result.warnings] == [True]
 
 
 def widened(radial, by=1.5):

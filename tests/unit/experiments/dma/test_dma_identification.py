@@ -62,6 +62,7 @@ def test_figure(result):
     assert list(drawings) == ["dma_identification.png"]
     assert drawings["dma_identification.png"]().startswith(b"\x89PNG")
     text_ = text_of(dma_identification_figure(result))
+    assert "synthetic data" in text_
     for words in ("elastic compliance", "95 % band, simultaneous", "genetic algorithm", "combinations of the 17 constants"):
         assert words in text_
 
@@ -160,6 +161,7 @@ def test_a_case_of_signals(request):
     drawings = figures_for(outcome)
     assert list(drawings) == ["dma_identification.png", "dma_signals.png"]
     words = text_of(signals_figure(outcome))
+    assert "Synthetic signals (points) and their fits (lines)" in words
     for label in ("1 Hz: the displacement lags by 73", "36 Hz", "loss tangent"):
         assert label in words
 

@@ -11,10 +11,10 @@ from scenes import SOLVER, unmarked_figures
 
 from tactsim.analytic.durometer import DurometerScale
 from tactsim.contact.sphere import Sphere
-from tactsim.experiments.durometer.figures.durometer import DurometerFigures
+from tactsim.experiments.durometer.figures.durometer import DurometerFigures, _past_the_reading
 from tactsim.experiments.durometer.scene import DurometerScene
 from tactsim.plotting import figures_for
-from tactsim.results import Quantity, Result, Status, StepRecord
+from tactsim.results import FieldFrame, Quantity, Result, Status, StepRecord
 
 READ = {"reading": 63.05, "reading_low": 62.86, "reading_high": 63.25, "depth": 0.92e-3, "spring_force": 0.775}
 
@@ -69,3 +69,13 @@ def test_png_by_name_and_nothing_without_steps():
     assert draw().startswith(b"\x89PNG")
     assert unmarked_figures(made_up(**READ)) == []
     assert figures_for(replace(made_up(), steps=())) == {}
+
+
+def test_a_section_deeper_than_the_reading_says_so():
+    result = made_up(**READ)
+    assert _past_the_reading(result) == ""
+    frames = [FieldFrame(depth, np.zeros((1, 3)), {}, {}, {}) for depth in (2.5e-3, READ["depth"])]
+    assert [_past_the_reading(replace(result, frames=(frame,))) for frame in frames] == [
+        "past the reading, which is at 920 µm",
+        "",
+    ]

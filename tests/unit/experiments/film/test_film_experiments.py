@@ -216,5 +216,5 @@ def test_the_figure_says_to_which_line_the_film_was_identified():
     result = load_case("film_lingstat").run(None)
     figure = result.plot("film_test")
     words = figure.get_supxlabel()
-    assert "identified to F = 20.94 C - 0.132" in words
+    assert "identified to F = 20.94 C − 0.132" in words
     assert "0.5 to 5 N at 1 s" in words, "the line of readings up to 8 N is another one"

@@ -57,6 +57,8 @@ def test_saturated_readings_are_shown_as_left_out():
 
 def test_many_sensors_have_a_line_each():
     figure = ForceCalibrationFigures().figure(calibrated(sensors=18))
-    assert "lines of 18 sensors" in text_of(figure)
+    assert "lines of 18 sensors, of 20." in text_of(figure)
+    assert "N/mS" in text_of(figure)
+    assert "F =" not in text_of(figure)  # the lines do not pass through zero
     assert len(figure.axes[0].lines) == 36
     assert len(figure.axes[0].get_legend().get_texts()) == 3

@@ -18,7 +18,8 @@ from tactsim.experiments.grasp.figures import view as grasp_view
 from tactsim.experiments.grasp.figures.grasp import history_figure, maps_figure, section_figure
 from tactsim.experiments.grasp.figures.moment import shown_moment
 from tactsim.experiments.grasp.figures.section import CuttingPlane, cutting_plane
-from tactsim.experiments.grasp.figures.viewed import outline
+from tactsim.experiments.grasp.figures.viewed import outline, viewed
+from tactsim.experiments.grasp.figures.views import views_figure
 from tactsim.experiments.grasp.scene import SimulatedGrasp
 from tactsim.interfaces.drawing import BegunDrawing
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
@@ -123,7 +124,7 @@ def test_values_of_elements_may_jump_where_regions_meet(frame):
     assert plane_cut(frame, 1, 20e-3, linear).values.max() == pytest.approx(whole.values.max(), rel=0.02)
 
 
-def test_an_artery_is_shown_at_its_highest_pressure(frame):
+def test_an_artery_is_shown_at_its_highest_pressure_in_every_picture(frame, monkeypatch):
     result = made_up(frame=frame)
     course = [0.0, 1e3, 5e3, 2e3, 1e3, 0.0]
     steps = tuple(
@@ -138,7 +139,12 @@ def test_an_artery_is_shown_at_its_highest_pressure(frame):
     np.testing.assert_array_equal(shown.quantities["taxel_force_upper"].value, force)
     opened = CLOSING - steps[2].values["displacement"]
     assert shown.scene_as(SimulatedGrasp).jaw_places["upper"][2] == pytest.approx(SIZE[2] - CLOSING + opened)
-    assert "highest pressure, 5 kPa" in text_of(section_figure(shown))
+    monkeypatch.setattr(grasp_view, "Rendering", Unrendered)
+    pictures = {name: text_of(picture.figure()) for name, picture in figures_for(pulsing).items() if hasattr(picture, "figure")}
+    pictures["grasp_view.png"] = grasp_view.view_figure(shown, grasp_view.view_rendering(shown)).get_suptitle()
+    told = {name for name, words in pictures.items() if "highest pressure, 5 kPa" in words}
+    assert told == set(pictures) - {"grasp_history.png"}, "a picture of another moment, or of one that is not named"
+    assert pulsing.plot()["grasp_view"].get_suptitle() == pictures["grasp_view.png"]
     assert shown_moment(result) is result
     assert shown_moment(replace(pulsing, frames=frames[1:])).quantities == pulsing.quantities
 
@@ -206,6 +212,32 @@ def test_maps_put_row_1_in_front_and_column_1_at_the_smallest_x():
     assert "0.500 kPa" in {text.get_text() for text in axes[1].texts}
     squares = [next(c for c in axis.collections if len(c.get_facecolor()) == 6) for axis in axes[:2]]
     assert tuple(squares[0].get_facecolor()[0]) != tuple(squares[1].get_facecolor()[0])
+
+
+def test_forces_on_the_maps_keep_the_zeros_that_count():
+    result = made_up(layout=TaxelLayout(rows=1, columns=2))
+    forces = {"upper": [[0.302, 0.27]], "lower": [[0.0, -0.1]]}
+    written = {f"taxel_force_{side}": Quantity(force, "N", "") for side, force in forces.items()}
+    axes = maps_figure(replace(result, quantities={**result.quantities, **written})).axes
+    assert {"0.30 N", "0.27 N"} <= {text.get_text() for text in axes[0].texts}
+    assert {"0 N", "−0.10 N"} <= {text.get_text() for text in axes[1].texts}
+
+
+def test_no_taxel_is_left_out_of_those_that_carry_most_by_round_off():
+    """Of eight taxels alike by symmetry seven were named."""
+    force = np.array([[1.0, 2.0, 1.0], [2.0, 3.0, 2.0], [1.0, 2.0, 1.0]])
+    course = np.linspace(1 / STEPS, 1, STEPS)[:, None, None]
+    histories = {
+        f"taxel_force_{side}_history": Quantity((course * force * (1 + sign * 1e-15)).tolist(), "N", "")
+        for side, sign in (("upper", -1), ("lower", 1))
+    }
+    result = made_up()
+    axes = history_figure(replace(result, quantities={**result.quantities, **histories})).axes
+    assert axes[0].get_title(loc="left").endswith("straight between the solved steps (marks)")
+    axis = axes[-1]
+    assert axis.get_title(loc="left").startswith("the 10 of 18 taxels that carry most")
+    assert [len(text.get_text().split()) for text in axis.get_legend().get_texts()] == [2, 8]
+    assert {line.get_linestyle() for line in axis.get_lines()} == {"-"}  # as of the upper jaw, which is the first
 
 
 def test_a_small_grasp_is_drawn_as_a_large_one():
@@ -381,3 +413,26 @@ def test_view_names_what_it_shows(monkeypatch, frame):
         places = camera.project(np.concatenate([surface.points for surface in surfaces]))
         assert (places > 0).all()
         assert (places < camera.pixels).all()
+
+
+def test_columns_closer_than_their_names_have_the_first_and_the_last_named():
+    """Eight columns at 2.5 mm were named over one another."""
+    result = made_up(layout=TaxelLayout(rows=8, columns=8, pitch=2.5e-3, size=2.2e-3))
+    figure = views_figure(result, viewed(result))
+    top = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("top"))
+    named = {text.get_text() for text in top.texts}
+    assert named == {"row 1", "row 8", "col. 1", "col. 8"}
+
+
+def test_the_views_say_that_jaws_are_not_above_each_other():
+    result = made_up()
+    assert viewed(result).taxels_in_words == "taxels,"
+    x, y, z = result.scene.jaw_places["upper"]
+    scene = result.scene.model_copy(update={"jaw_places": result.scene.jaw_places | {"upper": (x + 2e-3, y, z)}})
+    assert viewed(replace(result, scene=scene)).taxels_in_words == "taxels, midway between the jaws;"
+
+
+def test_a_cut_between_taxels_says_that_it_meets_none(frame):
+    assert "no taxel" not in section_figure(made_up(frame=frame)).axes[0].get_title(loc="left")
+    four = made_up(frame=frame, layout=TaxelLayout(rows=4, columns=4, pitch=9e-3, size=8e-3))
+    assert section_figure(four).axes[0].get_title(loc="left").endswith("\nno taxel is cut")

@@ -106,13 +106,12 @@ def test_wide_maps_stand_below_each_other_and_their_letters_grow_with_them() -> 
     assert min(sizes) > 7.0
 
 
-@pytest.mark.parametrize(("pressure", "words"), [(3.86e6, "313 N"), (86.0, "6.97 mN"), (0.5, "40.5 µN")])
+@pytest.mark.parametrize(("pressure", "words"), [(3.86e6, "310 N"), (86.0, "7.0 mN"), (0.5, "40 µN")])
 def test_forces_have_no_powers_of_ten(pressure: float, words: str) -> None:
     shown = text_of(maps_figure(grasped(SHAPES["usual"], pressure=pressure)))
     assert "e+" not in shown
     assert "e-" not in shown
-    number, unit = words.split()
-    assert f" {float(f'{float(number):.2g}'):g} {unit}" in f" {shown}"
+    assert f" {words}" in f" {shown}"
 
 
 def test_the_name_of_a_small_inclusion_stands_beside_it(monkeypatch: pytest.MonkeyPatch) -> None:

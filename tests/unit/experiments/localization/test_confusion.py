@@ -55,6 +55,7 @@ def test_classes_are_counted(folders):
     assert result.quantities["share_right"].value == pytest.approx(6 / 9)
     assert result.quantities["recalls"].value == [1.0, 0.5, None, None, None]
     assert unmarked_figures(result) == []
+    assert "colour: share of the true class" in result.plot()["confusion"].axes[0].get_xlabel()  # 8 of 10 is paler than 5 of 5
     assert str(folders["lump"]) not in str(result.scene)
 
 

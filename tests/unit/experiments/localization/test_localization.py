@@ -132,6 +132,31 @@ def test_the_views_write_what_each_taxel_reads_with_its_row_and_column(folders):
     assert {"row 1", "row 3", "col. 1", "col. 3"} <= set(named)
 
 
+def test_the_views_name_all_axes_and_lines_and_have_one_unit(folders):
+    """One view was in N and the next in mN, the top view had no name of x, the outline of an estimate was in no legend, and
+    nothing said that the views take negative readings for none."""
+    result = run(folders)
+    grasp = localized(result)
+    signal = np.zeros((2, 3, 3))
+    signal[:, 0] = 0.3  # more than 1 N in sums over columns only
+    signal[:, 2, 2] = -0.02
+    figure = views_figure(result, replace(grasp, signal=signal))
+    bars = [axis for axis in figure.axes if axis.get_label() == "<colorbar>"]
+    units = {(axis.get_xlabel() or axis.get_ylabel()).split(" in ", 1)[1] for axis in bars}
+    assert len(units) == 1
+    top = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("top"))
+    assert top.get_xlabel() == "x in mm (undeformed)"
+    assert units.pop().endswith("readings below 0 count as 0")
+    (legend,) = (axis.get_legend() for axis in figure.axes if axis.get_legend())
+    words = {
+        text.get_text(): handle.get_linestyle() for text, handle in zip(legend.get_texts(), legend.legend_handles, strict=True)
+    }
+    sized = any(estimate.radius is not None for estimate in grasp.estimates)
+    assert words["estimated centre and outline" if sized else "estimated centre"] == ("-" if sized else "None")
+    numbers = [text.get_text() for axis in figure.findobj(Axes) for text in axis.texts]
+    assert "−20" in numbers
+
+
 @pytest.mark.parametrize(("contrast", "word"), [(-2.7, "Softer"), (0.8, "Stiffer")])
 def test_the_views_say_whether_it_is_softer_or_stiffer_than_the_tissue(contrast, word, folders):
     result = run(folders)
@@ -258,3 +283,10 @@ experiment:
     path.write_text(text.replace("noise: 1 mN", "noise: -1 mN"), encoding="utf-8")
     with pytest.raises(CaseError, match="noise"):
         load_case(path)
+
+
+def test_the_views_say_where_the_estimator_did_not_read_what_they_draw(folders):
+    words = "Read off the forces as they are; drawn is their difference from the reference."
+    assert localized(run(folders, estimator=ThesisEstimator())).findings[-1] == words
+    assert words not in localized(run(folders)).findings
+    assert words not in localized(run(folders, reference=None, estimator=ThesisEstimator())).findings

@@ -99,3 +99,11 @@ def test_pulls_and_silence_are_said(monkeypatch):
     monkeypatch.setattr(Axes, "imshow", lambda self, levels, **style: shades.append(np.asarray(levels)))
     bands_figure(silent)
     assert not np.concatenate([shade.ravel() for shade in shades]).any()
+
+
+def test_every_picture_says_what_white_is():
+    """The section had a white of its own, of which nothing was said."""
+    result = drawn()
+    titles = [axis.get_title(loc="left") for axis in bands_figure(result).axes]
+    assert titles[-1] == f"between the arrays, the upper one above; white is {1e3 * result['section'].numbers.max():.3g} mN"
+    assert titles[0].endswith("white is 500 mN")

@@ -127,7 +127,7 @@ def test_figures(three):
     assert list(drawings) == ["force_over_depth.png", "switch_panel.png", "tissues_by_rate.png"]
     assert all(draw().startswith(b"\x89PNG") for draw in drawings.values())
     written = text_of(switch_panel_figure(three))
-    for words in ("mean rate 1.02", "force sensor", "tissue 1 at 1 mm/s"):
+    for words in ("mean rate 1.02", "force sensor", "touch 1 of 9, tissue 1 at 1 mm/s; mean rate"):
         assert words in written
     single = probe(sides="computed").run()
     assert list(figures_for(single)) == ["force_over_depth.png", "switch_panel.png"]
@@ -208,3 +208,13 @@ def test_the_curve_is_that_of_the_finite_elements():
     assert elements.quantities["contact_height_1"].value == pytest.approx(fast.quantities["contact_height_1"].value, rel=0.01)
     relaxing = probe(sides="computed").run()
     assert not np.allclose(elements.quantities["forces_1"].value, relaxing.quantities["forces_1"].value, rtol=2e-3)
+
+
+def test_a_mark_stands_where_the_probe_was_as_the_switch_closed():
+    """Beside tissue that does not follow the sides a switch at 1 mm closes at four times that depth, far from the curve."""
+    result = probe(sides="computed").run()
+    (axis,) = result.plot("force_over_depth").axes
+    curve, marks = axis.lines[:2]
+    assert len(marks.get_xdata()) == 1
+    assert marks.get_xdata()[0] > 2.0
+    assert np.interp(marks.get_xdata(), *curve.get_data()) == pytest.approx(marks.get_ydata(), rel=0.1)  # read through a low pass
