@@ -124,7 +124,7 @@ class Localization(Experiment):
             noise=self.noise,
             valid=None if readings.valid is None else readings.valid.tolist(),
             words=tuple(map(inclusion_in_words, estimate.inclusions)),
-            reference_unused=readings.difference is not None and getattr(self.estimator, "background", "reference") == "none",
+            reference_unused=readings.difference is not None and not self.estimator.needs_reference,
         )
 
     def _readings(self, stored: Result, plain: Result | None) -> Readings:

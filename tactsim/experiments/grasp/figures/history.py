@@ -18,7 +18,8 @@ from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.plotting.canvas import despined, scale_of
 from tactsim.results import Result
 
-MOST_TAXELS = 9
+MOST_TAXELS, MOST_NAMED = 9, 18
+"""Taxels whose forces are drawn, but for further ones with the same force, and those that the legend names for each curve."""
 ALIKE = 0.01
 """Taxels whose forces differ by less than this part of the largest one share a curve."""
 ROUND_OFF = 1e-6
@@ -124,7 +125,8 @@ def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
     for group, colour, marker in zip(_alike(forces, shown), TAXEL_COLOURS, TAXEL_MARKERS, strict=False):
         in_order = sorted(group, key=lambda taxel: (JAWS.index(taxel[0]), *taxel[1:]))
         line = FORCE_STYLES[in_order[0][0]][1]
-        names = [f"{LETTERS[side]}{row + 1},{column + 1}" for side, row, column in in_order]
+        names = [f"{LETTERS[side]}{row + 1},{column + 1}" for side, row, column in in_order[:MOST_NAMED]]
+        names += [f"and {len(in_order) - MOST_NAMED} more"] if len(in_order) > MOST_NAMED else []
         rows = [" ".join(names[k : k + 3]) for k in range(0, len(names), 3)]
         style: dict[str, Any] = {"color": colour, "marker": marker, "markersize": 3.5, "linewidth": 1.1}
         axis.plot(*_from_rest(along, factor * forces[group[0]]), line, label="\n".join(rows), **style)
