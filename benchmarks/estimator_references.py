@@ -18,7 +18,8 @@ from typing import Any
 import numpy as np
 
 from tactsim.cli import main
-from tactsim.dataset.ranking.measures import JudgedEstimate, measures, outcome, share
+from tactsim.dataset.ranking.intervals import share
+from tactsim.dataset.ranking.measures import JudgedEstimate, measures, outcome
 from tactsim.dataset.ranking.samples import JudgedSamples, Truth, judged_samples
 from tactsim.dataset.use.loading import load
 from tactsim.experiments.localization.response_store import stored_response
@@ -123,7 +124,7 @@ def judged(estimator: Estimator, samples: JudgedSamples, response: LumpResponse)
     each = [estimated(estimator, *one) for one in zip(samples.readings(response), samples.truths, strict=True)]
     numbers = measures([one for one, _ in each], samples.block_size)
     for name, present in (("warned_with_lump", True), ("warned_without_lump", False)):
-        numbers[name] = share([row["warned"] for one, row in each if one.truth.present is present])
+        numbers[name] = share((one.truth.group, row["warned"]) for one, row in each if one.truth.present is present)
     factors = [row["factor"] for _, row in each if row["factor"] is not None]
     numbers["factor"] = float(np.median(factors)) if factors else None
     return numbers, [row for _, row in each[:KEPT_ROWS]]
@@ -135,7 +136,7 @@ def record(work: Path, samples: int, references: Sequence[str] = tuple(REFERENCE
     for reference in references:
         folders = plain_grasps(work, reference)
         given, response = judged_samples(store, folders), stored_response(folders[-1])
-        noise, truths = noise or given.noise, given.truths
+        noise, truths = noise or float(np.median(given.noise)), given.truths
         for (kind, factor), estimator in ESTIMATORS.items():
             if not kinds or kind in kinds:
                 numbers, rows = judged(estimator, given, response)

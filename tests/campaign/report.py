@@ -10,7 +10,7 @@ import numpy as np
 
 from campaign.record import ANSWERS, first_runs, last_runs
 from campaign.trials import OUTCOMES, Ended
-from tactsim.dataset.ranking.measures import share
+from tactsim.dataset.ranking.intervals import share
 
 WANTED = 0.99
 """Part of the sensible cases that must be answered."""
@@ -51,7 +51,7 @@ def table_text(record: Sequence[Ended]) -> str:
 
 def share_text(answered: Sequence[bool]) -> str:
     """Part of the answered ones in percent with its interval."""
-    part = share(answered)
+    part = share(enumerate(answered))
     return f"{part['value']:.1%} [{part['low']:.1%}, {part['high']:.1%}]".replace("%", " %") if part else "-"
 
 
