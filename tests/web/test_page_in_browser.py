@@ -342,7 +342,7 @@ def test_the_estimate_stands_first_and_everything_fits_a_small_screen(browser: w
             bottom = "return document.getElementById(arguments[0]).getBoundingClientRect().bottom"
             assert browser.execute_script(bottom, "estimate") < browser.execute_script(bottom, "words"), "without scrolling"
             top = "return document.getElementById('estimate').getBoundingClientRect().top"
-            assert browser.execute_script(bottom, "age") <= browser.execute_script(top), "a long answer does not hide its step and age"
+            assert browser.execute_script(bottom, "age") <= browser.execute_script(top), "a long answer does not hide it"
             marks = "return [...document.querySelectorAll('#space-labels span')].map((one) => one.textContent)"
             until(lambda: browser.execute_script(marks) == ["x, 40 mm", "y, 40 mm", "z, 20 mm", "front"])
             assert "to 0.5" in browser.find_element(By.ID, "space-ramp").get_attribute("aria-label")
