@@ -253,5 +253,7 @@ def _index(schema: Schema, whole: Fragment, experiments: dict[str, str]) -> str:
         table(HEADER, rows),
         ["## Kinds of experiment", ""],
         table(("kind", "what it computes"), listed),
-        toctree([*experiments, "materials", *POINTS, "parts", "sweep"]),
+        toctree(experiments, hidden=True),
+        ["## What they share", ""],
+        toctree(["materials", *POINTS, "parts", "sweep"]),
     )

@@ -36,9 +36,9 @@ def of_docstring(text: str) -> str:
     return one_line("".join(plain))
 
 
-def toctree(entries: Iterable[str], *, depth: int = 1, caption: str = "") -> list[str]:
-    """Lines of a table of contents; entries are documents."""
-    options = [f":maxdepth: {depth}", *([f":caption: {caption}"] if caption else [])]
+def toctree(entries: Iterable[str], *, depth: int = 1, caption: str = "", hidden: bool = False) -> list[str]:
+    """Lines of a table of contents; entries are documents. A hidden one stands beside the page, not in it."""
+    options = [f":maxdepth: {depth}", *([f":caption: {caption}"] if caption else []), *([":hidden:"] if hidden else [])]
     return ["```{toctree}", *options, "", *entries, "```", ""]
 
 

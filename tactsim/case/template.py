@@ -65,7 +65,8 @@ def _names_material(value: Any) -> bool:
 
 
 def _comment(text: str, indent: str) -> list[str]:
-    return textwrap.wrap(text, LONGEST_LINE, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# ")
+    """Lines of a comment; the marks that a docstring puts around names of keys say nothing in a case file."""
+    return textwrap.wrap(text.replace("``", ""), LONGEST_LINE, initial_indent=f"{indent}# ", subsequent_indent=f"{indent}# ")
 
 
 def _entry(name: str, value: Any) -> list[str]:

@@ -295,7 +295,8 @@ def test_no_estimate_is_past_and_a_slow_one_is_cancelled(browser: webdriver.Chro
         browser.get(address)
         body = browser.find_element(By.TAG_NAME, "body")
         until(lambda: marked(browser) > 20 and "At (" in words(browser, "estimate"))
-        until(lambda: "Thesis; of step 4 of 4, 1.000 s, computed" in words(browser, "age"))
+        until(lambda: "Of step 4 of 4, 1.000 s, computed" in words(browser, "age"))
+        assert words(browser, "estimate-of") == "Thesis"
         assert "s ago" in until(lambda: "ago" in words(browser, "age") and words(browser, "age"))
         body.send_keys(str(len(content.choices)))
         until(lambda: shows_element(browser, "busy"))
@@ -340,6 +341,8 @@ def test_the_estimate_stands_first_and_everything_fits_a_small_screen(browser: w
             assert max(bottoms.values()) <= 640
             bottom = "return document.getElementById(arguments[0]).getBoundingClientRect().bottom"
             assert browser.execute_script(bottom, "estimate") < browser.execute_script(bottom, "words"), "without scrolling"
+            top = "return document.getElementById('estimate').getBoundingClientRect().top"
+            assert browser.execute_script(bottom, "age") <= browser.execute_script(top), "a long answer does not hide it"
             marks = "return [...document.querySelectorAll('#space-labels span')].map((one) => one.textContent)"
             until(lambda: browser.execute_script(marks) == ["x, 40 mm", "y, 40 mm", "z, 20 mm", "front"])
             assert "to 0.5" in browser.find_element(By.ID, "space-ramp").get_attribute("aria-label")
@@ -422,7 +425,8 @@ def test_a_localization_shows_its_estimate_first_and_draws_its_tube(browser: web
         until(lambda: "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm" in words(browser, "estimate"))
         assert "A ball and a tube" in words(browser, "estimate")
         assert "As stored: hypotheses" in words(browser, "estimators")
-        assert words(browser, "age") == "As stored: hypotheses; computed with the result, not now"
+        assert words(browser, "age") == "Computed with the result, not now"
+        assert words(browser, "estimate-of") == "As stored: hypotheses"
         regions = "return document.getElementById('space-canvas').dataset.regions"
         until(lambda: browser.execute_script(regions) == "3")  # of the ball, by its standard deviations, in three planes
         assert "its centre lies in here with 90 %" in words(browser, "legend")

@@ -69,10 +69,10 @@ export class Answer {
 
   #age() {
     if (!this.message || this.message.busy || this.message.cancelled) { get("age").textContent = ""; return; }
-    if (this.message.estimator === "stored") { get("age").textContent = `${this.message.label}; computed with the result, not now`; return; }
+    if (this.message.estimator === "stored") { get("age").textContent = "Computed with the result, not now"; return; }
     const seconds = Math.floor((performance.now() - this.since) / 1000), { moment } = this.message;
     const of = this.#moment(this.message), behind = this.now && moment.time != null && this.now.time !== null
       && Math.abs(this.now.time - moment.time) > 5e-4 ? `; the picture is of ${this.now.time.toFixed(3)} s` : "";
-    get("age").textContent = `${this.message.label}; of ${of || "these readings, "}computed ${seconds < 1 ? "just now" : `${seconds} s ago`}${behind}`;
+    get("age").textContent = `Of ${of || "these readings, "}computed ${seconds < 1 ? "just now" : `${seconds} s ago`}${behind}`;
   }
 }

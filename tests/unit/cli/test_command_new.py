@@ -18,6 +18,7 @@ from tactsim.shipped import shipped_cases
 @pytest.mark.parametrize("kind", experiment_kinds())
 def test_the_written_case_is_a_starting_case_and_every_comment_a_default(kind: str, tmp_path: Path) -> None:
     text = template(kind)
+    assert "``" not in text, "marks of a docstring"
     place = tmp_path / "case.yaml"
     place.write_text(text, encoding="utf-8")
     case = load_case(place)

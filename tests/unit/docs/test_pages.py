@@ -31,6 +31,13 @@ def test_every_kind_of_experiment_has_a_page_with_keys_units_and_defaults(made):
     assert '| `inner_radius` | `m`, > 0 | `"1.5 mm"` | Radius of the hole. |' in pages["case/bodies.md"]
 
 
+def test_the_page_of_case_files_lists_every_kind_once(made):
+    shown = re.sub(r"(?s)```{toctree}\n[^`]*:hidden:.*?```", "", made("case_pages").case_pages()["case/index.md"])
+    lines = [line for line in shown.splitlines() if "indentation_3d" in line]
+    assert len(lines) == 1, "in the table; the list beside the page has it, too"
+    assert "materials" in shown
+
+
 def test_every_command_has_a_page_with_its_options(made):
     pages = made("command_pages").command_pages()
     assert {f"commands/{command.NAME}.md" for command in COMMANDS} < set(pages)
