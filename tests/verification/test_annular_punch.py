@@ -99,7 +99,7 @@ def test_solid_punch_on_layers(base, poisson_ratio, verification_record):
 
 
 @pytest.mark.parametrize(("slenderness", "base", "beta", "factor", "axis"), RINGS)
-def test_rings_on_layers(slenderness, base, beta, factor, axis):
+def test_rings_on_layers(slenderness, base, beta, factor, axis, verification_record):
     """Mutants: the other base, the width of the ring in place of its radius."""
 
     def check(base, slenderness):
@@ -107,8 +107,11 @@ def test_rings_on_layers(slenderness, base, beta, factor, axis):
         assert_near(punch.force_factor, factor, rounding(4))
         if axis is not None:
             assert_near(1 - punch.rise_factor, axis, rounding(3))
+        return punch.force_factor
 
-    check(base, slenderness)
+    found = check(base, slenderness)
+    known = {"reference": "Chebyshev collocation, four printed digits", "kind": "published", "mesh": "integral equation"}
+    verification_record(f"annulus on a {base} layer, force factor", found, factor, scale=1.0, tolerance=rounding(4), **known)
     other = "slipping" if base == "bonded" else "bonded"
     assert_kills(check, base=(other, slenderness), width=(base, (1 - beta) * slenderness))
 
@@ -118,19 +121,22 @@ def over_mean(punch, r):
     return punch.pressure(r) * np.pi * (1 - punch.radius_ratio**2) / (4 * punch.force_factor)
 
 
-def test_pressure_profile():
+def test_pressure_profile(verification_record):
     """Mutants: the mean over the disc instead of the ring, a ring with a wider hole, a layer below."""
 
     def check(punch, over=1.0):
         assert_near(over_mean(punch, list(PROFILE)) * over, list(PROFILE.values()), rounding(5))
 
     check(solve_annular_punch(0.5))
+    found, known = over_mean(solve_annular_punch(0.5), list(PROFILE)), {"kind": "published", "mesh": "integral equation"}
+    known |= {"reference": "Chebyshev collocation, five printed digits", "scale": 1.0, "tolerance": rounding(5)}
+    verification_record("pressure under the annulus over its mean", found, list(PROFILE.values()), **known)
     layer = solve_annular_punch(0.5, radius_over_thickness=0.2)
     assert_kills(check, disc=(solve_annular_punch(0.5), 1 - 0.5**2), hole=(solve_annular_punch(0.51),), layer=(layer,))
 
 
 @pytest.mark.parametrize("beta", LOWEST)
-def test_least_pressure(beta):
+def test_least_pressure(beta, verification_record):
     """Mutants: the mean over the disc instead of the ring, and the pressure of a solid punch, least at the hole."""
     punch = solve_annular_punch(beta)
 
@@ -138,8 +144,11 @@ def test_least_pressure(beta):
         least = minimize_scalar(lambda r: float(pressure(r)), bounds=(beta, 1), method="bounded")
         assert_near(least.fun, LOWEST[beta], rounding(3))
         assert beta < least.x < (1 + beta) / 2 + 1e-3
+        return least.fun
 
-    check(lambda r: over_mean(punch, r))
+    found = check(lambda r: over_mean(punch, r))
+    known = {"reference": "Chebyshev collocation, three printed digits", "kind": "published", "mesh": "integral equation"}
+    verification_record("least pressure over the mean", found, LOWEST[beta], scale=1.0, tolerance=rounding(3), **known)
     solid = lambda r: (1 - beta**2) ** 0.5 / (1 - r**2) ** 0.5 / 2  # noqa: E731
     assert_kills(check, disc=(lambda r: (1 - beta**2) * over_mean(punch, r),), solid=(solid,))
 
@@ -153,7 +162,7 @@ def thin_ring(beta, near=16.0):
     return np.pi**2 * (1 + beta) / (4 * np.log(near * (1 + beta) / (1 - beta)))
 
 
-def test_thin_rings():
+def test_thin_rings(verification_record):
     """The error is of order d^2 ln(1 / d) in the width d, as the curvature enters the kernel.
 
     Mutants: the constant 8 of the kernel left out of the logarithm, and the radius of the middle for the outer one.
@@ -168,10 +177,12 @@ def test_thin_rings():
         assert errors[-1] < 1e-8
 
     check(thin_ring(1 - widths))
+    known = {"reference": "logarithmic kernel of near points", "kind": "exact", "mesh": "integral equation"}
+    verification_record("thin ring, force factor", computed[-1], thin_ring(1 - widths[-1]), tolerance=1e-8, **known)
     assert_kills(check, kernel=(thin_ring(1 - widths, near=2.0),), radius=(thin_ring(1 - widths) / (1 - widths / 2),))
 
 
-def test_small_holes():
+def test_small_holes(verification_record):
     """The series stops before b^7, the printed formula of the thesis errs from b^4 on; either is the mutant of the other."""
     beta = np.array([0.025, 0.05, 0.1])
     kappa = np.array([solve_annular_punch(b, tolerance=1e-13).force_factor for b in beta])
@@ -182,10 +193,13 @@ def test_small_holes():
 
     check("small_hole_series", 7)
     check("thesis_4_2_21", 4)
+    errors = np.abs(force_factor(beta, "small_hole_series") - kappa)
+    known = {"reference": "series broken off before the seventh power", "kind": "convergence", "mesh": "integral equation"}
+    verification_record("small hole, force factor", order=float(np.log2(errors[2] / errors[1])), theory=7, **known)
     assert_kills(check, thesis=("thesis_4_2_21", 7), series=("small_hole_series", 4), smythe=("smythe", 7))
 
 
-def test_the_rise_over_a_small_hole():
+def test_the_rise_over_a_small_hole(verification_record):
     """4 / pi^2 of the ratio; mutant: 4 / pi, the square left out."""
     ratios = np.array([1e-4, 1e-3])
     rise = np.array([solve_annular_punch(b, tolerance=1e-13).rise_factor for b in ratios])
@@ -194,6 +208,10 @@ def test_the_rise_over_a_small_hole():
         np.testing.assert_allclose(rise / ratios, constant, rtol=1e-6)
 
     check(4 / np.pi**2)
+    known = {"reference": "first term in the ratio of the radii", "kind": "exact", "mesh": "integral equation"}
+    verification_record(
+        "rise over a small hole over the ratio of the radii", rise / ratios, 4 / np.pi**2, tolerance=1e-6, **known
+    )
     assert_kills(check, square=(4 / np.pi,))
 
 
@@ -265,7 +283,7 @@ def test_the_pressure_put_back_moves_the_surface_as_asked(beta, slenderness, bas
         assert_kills(check, half_space=(alone, expected))
 
 
-def test_a_thin_slipping_layer_is_a_bed_of_springs():
+def test_a_thin_slipping_layer_is_a_bed_of_springs(verification_record):
     """u = p h (1 - nu) / (2 G) away from the edges, so that kappa grows by (pi / 2) (1 - b^2) per a / h.
 
     Mutants: springs of the modulus 3 G of uniaxial stress, and springs under the hole too.
@@ -274,7 +292,10 @@ def test_a_thin_slipping_layer_is_a_bed_of_springs():
     def check(beta, growth):
         factors = [solve_annular_punch(beta, radius_over_thickness=s, base="slipping").force_factor for s in (10.0, 20.0)]
         assert_near((factors[1] - factors[0]) / 10, growth, 5e-4)
+        return (factors[1] - factors[0]) / 10
 
+    known = {"reference": "bed of springs", "kind": "exact", "mesh": "integral equation", "scale": 1.0, "tolerance": 5e-4}
     for beta in (0.0, 0.5):
-        check(beta, np.pi / 2 * (1 - beta**2))
+        growth = np.pi / 2 * (1 - beta**2)
+        verification_record("thin slipping layer, growth of the force factor", check(beta, growth), growth, **known)
     assert_kills(check, modulus=(0.0, 3 / 8 * np.pi), hole=(0.5, np.pi / 2))

@@ -59,12 +59,16 @@ def test_force_follows_hertz(pressed, verification_record):
     )
 
 
-def test_modulus_by_hertz_is_that_of_the_material(pressed):
+def test_modulus_by_hertz_is_that_of_the_material(pressed, verification_record):
     """The same error as that of the force; mutants: the modulus E / (1 - nu^2), and the diameter for the radius."""
 
     def check(modulus):
         assert pressed["hertz_modulus"] == pytest.approx(modulus, rel=FORCE_TOLERANCE)
 
     check(MODULUS)
+    known = {"reference": "Hertz 1881", "kind": "exact", "mesh": "axisymmetric, finest element 1/250 of the radius"}
+    verification_record(
+        "durometer, modulus of the material", pressed["hertz_modulus"], MODULUS, tolerance=FORCE_TOLERANCE, **known
+    )
     assert_kills(check, plane_strain=(MODULUS / (1 - 0.5**2),), diameter=(MODULUS / 2**0.5,))
     assert pressed["reading"] == pytest.approx(pressed["hertz_reading"], abs=100 * FORCE_TOLERANCE)

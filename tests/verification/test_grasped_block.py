@@ -139,7 +139,7 @@ def test_narrow_jaws_let_the_tissue_bulge_beside_them():
     assert state.regularisation.tolerance >= -min(c.at(_moved(model, state, c)).gap.min() for c in state.contacts)
 
 
-def test_a_force_closes_both_jaws_alike(stuck):
+def test_a_force_closes_both_jaws_alike(stuck, verification_record):
     model, closed = stuck
     force = abs(model.jaw_force(closed, "upper")[2])
     begun = model.start(Coulomb(friction=0.6), SCALE)
@@ -149,8 +149,10 @@ def test_a_force_closes_both_jaws_alike(stuck):
         pressed = model.equilibrium(half, 5e-4, half.unknowns, force=given)
         assert pressed.load == pytest.approx(1e-3, rel=1e-3)
         assert abs(model.jaw_force(pressed, "lower")[2]) == pytest.approx(force, rel=1e-6)
+        return pressed.load
 
-    check(force)
+    known = {"reference": "the closing whose force it is", "kind": "invariance", "mesh": "cells of a block", "tolerance": 1e-3}
+    verification_record("closing under a force", check(force), 1e-3, **known)
     assert_kills(check, shared_by_the_jaws=(force / 2,))
 
 

@@ -91,20 +91,24 @@ def test_moduli_scale_pressures_and_forces(measure, verification_record):
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_lengths_scale_forces_by_their_square(measure):
+def test_lengths_scale_forces_by_their_square(measure, verification_record):
     """Force per unit thickness, in plane strain, by the first power."""
     power = 1 if measure == "plane_strain" else 2
     scaled, plain = squeeze(measure, length=3.0), squeeze(measure)
     assert_same(scaled, plain, length=3.0, force=3.0**power)
+    known = {"reference": "dimensional analysis", "kind": "invariance", "mesh": f"{measure}, distorted", "tolerance": TOLERANCE}
+    verification_record("lengths times 3, reaction", scaled.reaction, 3.0**power * plain.reaction, **known)
     with pytest.raises(AssertionError):
         assert_same(scaled, plain, length=3.0, force=3.0 ** (3 - power))
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_millimetres_and_megapascals_give_what_metres_and_pascals_give(measure):
+def test_millimetres_and_megapascals_give_what_metres_and_pascals_give(measure, verification_record):
     force = 1e-3 if measure == "plane_strain" else 1.0  # N/mm there
     millimetres, metres = squeeze(measure, length=1e3, modulus=1e-6), squeeze(measure)
     assert_same(millimetres, metres, length=1e3, pressure=1e-6, force=force)
+    known = {"reference": "metres and pascals", "kind": "invariance", "mesh": f"{measure}, distorted", "tolerance": TOLERANCE}
+    verification_record("millimetres and megapascals, reaction", millimetres.reaction, force * metres.reaction, **known)
     with pytest.raises(AssertionError):  # thickness of a millimetre or a metre taken for the other
         assert_same(millimetres, metres, length=1e3, pressure=1e-6, force=1e-3 / force)
 
@@ -147,33 +151,39 @@ def rotated_forces(body: Body, unknowns: Array, Q: Array) -> Array:
     return body.space.split(body.residual(turned))[0]
 
 
-def assert_isotropic(measure: str, material: Material) -> None:
-    """The forces of a body are those of one whose reference is turned by Q, at the same place of every particle."""
+def assert_isotropic(measure: str, material: Material) -> tuple[Array, Array]:
+    """The forces of a body are those of one whose reference is turned by Q, at the same place of every particle; both."""
     body, unknowns, forces = forces_and_state(measure, material)
     turned = body.space.nodes @ rotation(body.space.dim).T
     other = body_of(QuadraticMesh(turned, body.space.elements, body.regions), measure, material)
     state = unknowns.copy()
     other.space.split(state)[0][:] += body.space.nodes - turned
-    assert_close(other.space.split(other.residual(state))[0], forces, 1e-12)  # round-off
+    found = other.space.split(other.residual(state))[0]
+    assert_close(found, forces, 1e-12)  # round-off
+    return found, forces
 
 
-def assert_objective(measure: str, material: Material) -> None:
-    """The forces of a turned body are the turned forces."""
+def assert_objective(measure: str, material: Material) -> tuple[Array, Array]:
+    """The forces of a turned body are the turned forces; both."""
     body, unknowns, forces = forces_and_state(measure, material)
     Q = rotation(body.space.dim)
-    assert_close(rotated_forces(body, unknowns, Q), forces @ Q.T, 1e-12)  # round-off
+    found, expected = rotated_forces(body, unknowns, Q), forces @ Q.T
+    assert_close(found, expected, 1e-12)  # round-off
+    return found, expected
 
 
 @pytest.mark.parametrize("measure", ["plane_strain", "solid"])
-def test_the_forces_of_a_turned_body_are_the_turned_forces(measure):
-    assert_objective(measure, MooneyRivlin5(**MODULI))
+def test_the_forces_of_a_turned_body_are_the_turned_forces(measure, verification_record):
+    known = {"reference": "the forces turned", "kind": "invariance", "mesh": f"{measure}, distorted", "tolerance": 1e-12}
+    verification_record("forces of a turned body", *assert_objective(measure, MooneyRivlin5(**MODULI)), **known)
     with pytest.raises(AssertionError):  # small strains are not objective
         assert_objective(measure, LinearElastic(youngs_modulus=1e4, poisson_ratio=0.4))
 
 
 @pytest.mark.parametrize("measure", ["plane_strain", "solid"])
-def test_the_forces_of_a_body_cut_in_another_direction_are_the_same(measure):
-    assert_isotropic(measure, MooneyRivlin5(**MODULI))
+def test_the_forces_of_a_body_cut_in_another_direction_are_the_same(measure, verification_record):
+    known = {"reference": "itself, turned before", "kind": "invariance", "mesh": f"{measure}, distorted", "tolerance": 1e-12}
+    verification_record("forces of a body cut elsewhere", *assert_isotropic(measure, MooneyRivlin5(**MODULI)), **known)
     with pytest.raises(AssertionError):  # small strains take the turn for a strain
         assert_isotropic(measure, LinearElastic(youngs_modulus=1e4, poisson_ratio=0.4))
 
@@ -189,7 +199,7 @@ def test_an_axisymmetric_body_does_not_feel_a_shift_along_its_axis():
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_the_forces_of_a_body_balance(measure):
+def test_the_forces_of_a_body_balance(measure, verification_record):
     """No net force in any direction that a rigid shift may take, whatever the deformation.
 
     Mutants: nodes in the middles of edges left out, and the radial forces, which the hoop stress does not let balance.
@@ -201,13 +211,15 @@ def test_the_forces_of_a_body_balance(measure):
         assert_close(forces.sum(axis=0), 0.0, 1e-13, scale=np.abs(forces).sum())  # round-off
 
     check(along)
+    known = {"reference": "balance", "kind": "exact", "mesh": f"{measure}, distorted", "tolerance": 1e-13}
+    verification_record("sum of the forces of a body", along.sum(axis=0), 0.0, scale=np.abs(along).sum(), **known)
     corners = np.unique(body.space.elements[:, : body.space.dim + 1])
     assert_kills(check, corners=(along[corners],))
     if measure == "axisymmetric":
         assert_kills(check, radial=(forces,))
 
 
-def test_a_small_load_is_followed_as_closely_in_time_as_one_a_hundred_times_larger():
+def test_a_small_load_is_followed_as_closely_in_time_as_one_a_hundred_times_larger(verification_record):
     """Both in the linear range. An error that counts by at least 1e-7 of the modulus takes 83 steps, not 106: 2.5e-4 off."""
 
     def extensions(load: float) -> list[float]:
@@ -229,3 +241,5 @@ def test_a_small_load_is_followed_as_closely_in_time_as_one_a_hundred_times_larg
     large, small = extensions(6e-3), extensions(6e-5)
     assert len(small) == pytest.approx(len(large), abs=3)
     assert small[-1] == pytest.approx(large[-1], rel=2e-5)
+    known = {"reference": "a load a hundred times as large", "kind": "invariance", "mesh": "cube", "tolerance": 2e-5}
+    verification_record("relaxing cube under a small load, extension over load", small[-1], large[-1], **known)

@@ -47,7 +47,7 @@ def poor_volume(stiffness: float, monkeypatch) -> tuple[float, float]:
     return float(weights[error > OFF].sum() / weights.sum()), float(state.kinematics.J.min())
 
 
-def test_tissue_keeps_its_volume_at_the_edges_of_the_jaws(monkeypatch):
+def test_tissue_keeps_its_volume_at_the_edges_of_the_jaws(monkeypatch, verification_record):
     """Mutant: linear pressures alone hold the volume."""
 
     def check(stiffness):
@@ -56,10 +56,13 @@ def test_tissue_keeps_its_volume_at_the_edges_of_the_jaws(monkeypatch):
         assert least > 0.9  # 0.97, and 0.86 without
 
     check(VOLUME_STIFFNESS)
+    known = {"reference": "volume of incompressible tissue", "kind": "exact", "mesh": "graded cells of 1.6 to 4 mm"}
+    found, _ = poor_volume(VOLUME_STIFFNESS, monkeypatch)
+    verification_record("part of a grasped block whose volume is off by 2 %", found, 0.0, scale=1.0, tolerance=0.02, **known)
     assert_kills(check, without=(0.0,))
 
 
-def test_tissue_that_is_drawn_around_a_tight_fillet_keeps_its_volume(monkeypatch):
+def test_tissue_that_is_drawn_around_a_tight_fillet_keeps_its_volume(monkeypatch, verification_record):
     """On elements nearly as long as the fillet, against those of half the length without the stiffness.
 
     Mutant: linear pressures alone hold the volume; at 3.17 mm an element beside the fillet turns inside out.
@@ -81,8 +84,15 @@ def test_tissue_that_is_drawn_around_a_tight_fillet_keeps_its_volume(monkeypatch
         assert result.status is Status.CONVERGED, result.reason
         assert result["reaction_force"].value == pytest.approx(1.5385, rel=2e-3)  # by `refinement: 2`
         assert result["min_volume_ratio"].value > 0.78  # 0.82, and 0.70 without
+        return result["reaction_force"].value
 
-    check(VOLUME_STIFFNESS)
+    found = check(VOLUME_STIFFNESS)
+    known = {
+        "reference": "elements of half the length",
+        "kind": "invariance",
+        "mesh": "axisymmetric, 0.13 mm at a fillet of 0.17 mm",
+    }
+    verification_record("punch with a tight fillet, force", found, 1.5385, tolerance=2e-3, **known)
     assert_kills(check, stiffness=(0.0,))
 
 
@@ -109,13 +119,20 @@ def stability(size: float, *, linear: bool = False) -> float:
     return float(np.sqrt(max(eigh(schur, mass, eigvals_only=True)[1], 0.0)))
 
 
-def test_pressures_stay_stable_as_cells_shrink():
+def test_pressures_stay_stable_as_cells_shrink(verification_record):
     """Mutant: displacements as linear as the pressures, which then checkerboard."""
 
     def check(linear):
         coarse, fine = (stability(size, linear=linear) for size in (8e-3, 5e-3))
         assert coarse > 0.2
         assert fine > 0.95 * coarse
+        return fine, coarse
 
-    check(False)
+    found, expected = check(False)
+    known = {
+        "reference": "that of cells 1.6 times as long (Chapelle & Bathe 1993)",
+        "kind": "invariance",
+        "mesh": "graded cells of 5 mm",
+    }
+    verification_record("inf-sup constant of displacement and pressure", found, expected, tolerance=0.05, **known)
     assert_kills(check, linear=(True,))

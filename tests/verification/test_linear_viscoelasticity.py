@@ -19,6 +19,7 @@ SOLID = GeneralizedMaxwell(3000.0, [2000.0], [5.0])
 """verification.md, section 4, case SLS-1: moduli in Pa, time in s."""
 RADIUS, DEPTH = 1.5e-3, 0.3e-3
 """Punch radius and indentation in m."""
+PRINTED = {"kind": "published", "mesh": "closed form"}
 OMEGA = 2 * math.pi
 """Angular frequency of the harmonic load of the thesis in rad/s, section 4.7."""
 
@@ -43,7 +44,7 @@ RETARDED = GeneralizedMaxwell(3000.0, [2000.0], [25 / 3])
 """Mutant of the standard solid: its retardation time in place of its relaxation time."""
 
 
-def test_the_step_and_the_ramp_of_the_standard_solid():
+def test_the_step_and_the_ramp_of_the_standard_solid(verification_record):
     """Mutants: the retardation time for the relaxation time, and a ramp that is held at its end at once."""
 
     def check_step(solid):
@@ -54,6 +55,9 @@ def test_the_step_and_the_ramp_of_the_standard_solid():
 
     check_step(SOLID)
     check_ramp(ramp(DEPTH / 2, 2.0), SOLID)
+    known = {"reference": "standard solid, closed form, nine printed digits", "scale": 1.0, "tolerance": 5.1e-9} | PRINTED
+    found = punch_force(step(DEPTH), list(STEP_FORCES))
+    verification_record("punch on a standard solid, force in N", found, list(STEP_FORCES.values()), **known)
     assert_kills(check_step, retarded=(RETARDED,))
     assert_kills(check_ramp, retarded=(ramp(DEPTH / 2, 2.0), RETARDED), step=(step(DEPTH), SOLID))
 
@@ -97,7 +101,7 @@ def test_the_creep_of_the_standard_solid(verification_record):
 
 
 @pytest.mark.parametrize("times", TIMES)
-def test_the_table_keeps_its_curves_through_the_relaxation_modulus(times):
+def test_the_table_keeps_its_curves_through_the_relaxation_modulus(times, verification_record):
     """Twelve decades; round-off of sums and products over nine terms.
 
     Mutants: retardation times in the relaxation modulus, and relaxation times in the creep compliance.
@@ -115,6 +119,8 @@ def test_the_table_keeps_its_curves_through_the_relaxation_modulus(times):
         np.testing.assert_allclose(response(kelvin, step(1.0), x), kelvin.creep(x), rtol=1e-12)
 
     check(back, maxwell)
+    known = {"reference": "itself, by way of the relaxation modulus", "kind": "invariance", "mesh": "closed form"}
+    verification_record("creep compliance over twelve decades", back.creep(x) / kelvin.creep(x), 1.0, tolerance=1e-12, **known)
     relaxing = GeneralizedMaxwell(maxwell.equilibrium_modulus, maxwell.moduli, kelvin.times)
     slower = GeneralizedKelvin(back.glassy_compliance, back.compliances, maxwell.times)
     assert_kills(check, retardation_times=(back, relaxing), relaxation_times=(slower, maxwell))
@@ -147,7 +153,7 @@ def test_retardation_times_do_not_give_the_printed_rates():
         agree(rates("retardation_times")[:2], RATES[:2], digit=5.1e-4)
 
 
-def test_the_bracket_of_the_printed_displacement():
+def test_the_bracket_of_the_printed_displacement(verification_record):
     """Thesis, eq. 4.6.4; most digits are cut, 418.36 and 532.91 are rounded.
 
     Mutants: units in reverse order, the table as the whole shear compliance, and the free spring left out of the sum.
@@ -159,6 +165,8 @@ def test_the_bracket_of_the_printed_displacement():
         agree(total, 1708.08, digit=0.01)
 
     check(kelvin.compliances, kelvin.equilibrium_compliance)
+    known = {"reference": "thesis, eq. 4.6.4, cut at two decimals", "scale": 1.0, "tolerance": 0.01} | PRINTED
+    verification_record("bracket of the displacement, amplitudes", kelvin.compliances, AMPLITUDES, **known)
     whole = atrial_shear_compliance("viscosities", "half_shear").scaled(1e6)
     assert_kills(
         check,
@@ -194,7 +202,7 @@ def dynamic_coefficients(amplitude: float) -> dict[str, float]:
     return {"first": first, "second": second, "slow": transients[2:].sum(), "cos": -transients.sum(), "sin": in_phase}
 
 
-def test_the_dynamic_coefficients_are_those_of_the_response():
+def test_the_dynamic_coefficients_are_those_of_the_response(verification_record):
     """Mutants: the wrong sign of the part out of phase, the load from 0 s on, and no transients of the slow units."""
     kelvin = table_4_1("viscosities").scaled(1e6)
     x, t = 1 / kelvin.times, np.linspace(2, 6, 81)
@@ -210,6 +218,8 @@ def test_the_dynamic_coefficients_are_those_of_the_response():
 
     expected = in_phase + out_of_phase + transients
     check(2.0, expected)
+    known = {"reference": "its transform by hand", "kind": "exact", "mesh": "closed form", "scale": 3.0, "tolerance": 1e-12}
+    verification_record("dynamic response", response(kelvin, harmonic(0.25, 1.0, start=2.0), t), expected, **known)
     assert slow.sum() == pytest.approx(c["slow"], rel=1e-14)
     assert_kills(
         check,
@@ -219,7 +229,7 @@ def test_the_dynamic_coefficients_are_those_of_the_response():
     )
 
 
-def test_the_printed_dynamic_response_has_the_amplitude_of_its_transform():
+def test_the_printed_dynamic_response_has_the_amplitude_of_its_transform(verification_record):
     """Thesis, eq. 4.7.1: pi / 2 in the transform is an amplitude of 0.25 N, where the text has 0.2 N; eq. 4.7.2 has 0.25 N."""
     c = dynamic_coefficients(0.25)
     agree(c["second"], 391.05, digit=0.01)
@@ -227,6 +237,8 @@ def test_the_printed_dynamic_response_has_the_amplitude_of_its_transform():
     agree(c["cos"], -2.869, digit=5.1e-4)
     agree(c["sin"], 1.527, digit=5.1e-4)
     agree([c["cos"], c["sin"]], [-2.86, 1.52], digit=0.01)
+    known = {"reference": "thesis, eq. 4.7.1, three decimals", "scale": 1.0, "tolerance": 5.1e-4} | PRINTED
+    verification_record("dynamic response, coefficients", [c["cos"], c["sin"]], [-2.869, 1.527], **known)
 
 
 @pytest.mark.parametrize(("name", "printed"), [("second", 391.05), ("first", 6679.99), ("cos", -2.86), ("sin", 1.52)])

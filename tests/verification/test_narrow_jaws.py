@@ -122,9 +122,16 @@ def test_cells_at_the_edges_of_tiny_jaws_are_as_thin_as_these_ask(verification_r
 
 
 @pytest.mark.slow
-def test_a_finer_mesh_reads_the_same():
+def test_a_finer_mesh_reads_the_same(verification_record):
     forces = pressed({"kind": "graded", "size": 4e-3, "edge_size": 1.467e-3, "growth": 0.8})
     assert np.abs(forces - FINE).max() < CONVERGED * FINE.max()
+    known = {
+        "reference": "a finer mesh",
+        "kind": "invariance",
+        "mesh": "graded, 4 mm and 1.5 mm at edges",
+        "tolerance": CONVERGED,
+    }
+    verification_record("taxel forces between narrow jaws", forces, FINE, **known)
 
 
 def drawn_around_the_edges() -> Result:

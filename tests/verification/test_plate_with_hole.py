@@ -109,7 +109,7 @@ def pulled(dimension: str, held: tuple[str, ...] = ()) -> list[float]:
     return [float(quantities[name].value) for name in ("force", "narrower")]
 
 
-def test_a_plate_in_space_is_that_of_plane_strain_if_its_thickness_is_held():
+def test_a_plate_in_space_is_that_of_plane_strain_if_its_thickness_is_held(verification_record):
     """Mutant: a plate that may become thinner."""
     section = pulled("plane_strain")
 
@@ -117,4 +117,6 @@ def test_a_plate_in_space_is_that_of_plane_strain_if_its_thickness_is_held():
         assert pulled("3d", held) == pytest.approx(section, rel=0.02)  # bricks are divided otherwise than squares
 
     check(("bottom", "top"))
+    known = {"reference": "plane strain", "kind": "invariance", "mesh": "bricks for squares", "tolerance": 0.02}
+    verification_record("plate with a hole, held in its thickness", pulled("3d", ("bottom", "top")), section, **known)
     assert_kills(check, thinner=(("bottom",),))

@@ -33,8 +33,11 @@ def plain(factor: float = 1.0, friction: float = FRICTION) -> Readings:
 
 
 @pytest.mark.slow
-def test_forces_are_in_proportion_to_the_moduli() -> None:
+def test_forces_are_in_proportion_to_the_moduli(verification_record) -> None:
     reference, stiffer = plain(), plain(STIFFER)
     assert stiffer.forces == pytest.approx(STIFFER * reference.forces, rel=1e-4)  # the solver's tolerance
+    known = {"reference": "forces of the softer one, 1.2 times as large", "kind": "invariance", "mesh": "6 x 6 x 3 cells"}
+    expected = STIFFER * np.asarray(reference.forces)
+    verification_record("grasp of tissue 20 % stiffer, taxel forces", stiffer.forces, expected, tolerance=1e-4, **known)
     slipping = plain(friction=0.4).forces / reference.forces
     assert np.ptp(slipping) > 1e-2, "other friction is no common factor"

@@ -249,7 +249,7 @@ def test_a_force_makes_linear_tissue_creep(measure, verification_record):
 
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize("law", [Coulomb(friction=0.3), Stick()], ids=["coulomb", "stick"])
-def test_a_held_squeeze_with_friction_relaxes_with_the_material(measure, law):
+def test_a_held_squeeze_with_friction_relaxes_with_the_material(measure, law, verification_record):
     material = MooneyRivlin2(c10=1.0, c01=0.25, relaxation=THREE_TIMES)
     block = Block(measure, material, law=law, cells=3, glued=True, tolerance=1e-4)
     for height in np.linspace(1, 0.85, 5)[1:]:
@@ -264,11 +264,14 @@ def test_a_held_squeeze_with_friction_relaxes_with_the_material(measure, law):
             computed, fading, rtol=5e-4, err_msg="penetration of 1e-4 that the falling pressure gives back"
         )
 
-    check(equilibrium + branches.sum(axis=1))
+    fading = equilibrium + branches.sum(axis=1)
+    check(fading)
+    known = {"reference": "relaxation of the material", "kind": "exact", "mesh": f"{measure}, 3 cells per side"}
+    verification_record("squeeze held with friction, force", computed, fading, tolerance=5e-4, scale=1.0, **known)
     assert_kills(check, without_the_slowest=(equilibrium + amplitudes[-1] + branches[:, :-1].sum(axis=1),))
 
 
-def test_a_force_brings_a_distant_body_into_touch():
+def test_a_force_brings_a_distant_body_into_touch(verification_record):
     near, far, loaded = (Block("axisymmetric", RUBBER, law=Coulomb(friction=0.0), tolerance=1e-6) for _ in range(3))
     far.place = 1.5 * far.place
     reached = far.pressed(0.0, force=0.1)
@@ -277,7 +280,10 @@ def test_a_force_brings_a_distant_body_into_touch():
         assert reached == pytest.approx(height, rel=1e-8)
         assert reached < 0.999
 
-    check(near.pressed(0.0, force=0.1))
+    height = near.pressed(0.0, force=0.1)
+    check(height)
+    known = {"reference": "a body that touches", "kind": "invariance", "mesh": "axisymmetric, few cells", "tolerance": 1e-8}
+    verification_record("force on a body at a distance, place", reached, height, **known)
     assert_kills(check, force_per_radian=(loaded.pressed(0.0, force=0.1 / (2 * np.pi)),), untouched=(1.5,))
 
 

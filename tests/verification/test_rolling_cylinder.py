@@ -27,7 +27,7 @@ def between_plates(part, contacts, asked, cells=8):
     return {name: float(one.value) for name, one in result.quantities.items()}
 
 
-def test_the_whole_is_pressed_as_its_quarter_is(one_thread):
+def test_the_whole_is_pressed_as_its_quarter_is(one_thread, verification_record):
     """The whole has the cells of four quarters. Mutant: a quarter that is pressed by all of the approach."""
     force = {"force": {"kind": "contact_force", "component": "y"}}
     whole = between_plates("whole", [{"side": "top", "y": -PRESSED}, {"side": "bottom"}], force)["force"]
@@ -39,6 +39,8 @@ def test_the_whole_is_pressed_as_its_quarter_is(one_thread):
         between_plates("quarter", [{"side": "top", "y": -approach}], force)["force"] for approach in (PRESSED / 2, PRESSED)
     ]
     check(quarters[0])
+    known = {"reference": "its quarter", "kind": "invariance", "mesh": "cells of four quarters", "tolerance": 1e-5}
+    verification_record("force of a pressed cylinder", whole, 2 * quarters[0], **known)
     assert_kills(check, all_of_it=(quarters[1],))
 
 

@@ -137,7 +137,7 @@ def touched(scale: Scale) -> dict[str, float]:
 
 
 @pytest.mark.parametrize("scale", [CELL, HULL], ids=["cell", "hull"])
-def test_closed_forms_of_sensors_know_no_size(scale):
+def test_closed_forms_of_sensors_know_no_size(scale, verification_record):
     """Mutants: moduli that stay where the rest is multiplied, and forces over the lengths alone."""
 
     def check(found: dict[str, float]) -> None:
@@ -146,5 +146,8 @@ def test_closed_forms_of_sensors_know_no_size(scale):
     assert designed(scale) == pytest.approx(designed(Scale()), rel=TOLERANCE)
     found = touched(scale)
     check(found)
+    known = {"reference": "the unscaled sensor", "kind": "invariance", "mesh": "closed form", "tolerance": TOLERANCE}
+    ratios = [found[name] / value for name, value in touched(Scale()).items()]
+    verification_record("closed forms of a scaled sensor", ratios, 1.0, **known)
     of_forces = {name: value / (scale.length if "force" in name else 1.0) for name, value in found.items()}
     assert_kills(check, moduli=(touched(Scale(scale.length)) | {"0": found["0"] * scale.modulus},), lengths=(of_forces,))

@@ -165,10 +165,13 @@ def test_punch_on_layer(ratio, base, exact_ratio, verification_record):
 
 
 @pytest.mark.parametrize("poisson_ratio", [pytest.param(0.49, marks=pytest.mark.slow), 0.30])
-def test_punch_on_compressible_layer(poisson_ratio):
+def test_punch_on_compressible_layer(poisson_ratio, verification_record):
     factor = solid_factor(1.0, "bonded", poisson_ratio)
     force, _ = press(Punch(radius=RADIUS), RADIUS, poisson_ratio=poisson_ratio)
-    check_force(force, factor / (2 * (1 - poisson_ratio)))
+    expected = factor / (2 * (1 - poisson_ratio))
+    check_force(force, expected)
+    known = {"reference": "integral equation of the layer", "kind": "exact", "mesh": "axisymmetric, graded"}
+    verification_record("punch on a compressible layer", normalised(force), expected, tolerance=FORCE_TOLERANCE, **known)
     assert_kills(check_force, incompressible=(force, solid_factor(1.0, "bonded", 0.5)), without_the_ratio=(force, factor))
 
 
@@ -254,10 +257,12 @@ def test_sphere_follows_hertz(verification_record):
 
 
 @pytest.mark.parametrize("beta", [0.5, pytest.param(0.9, marks=pytest.mark.slow)])
-def test_friction_leaves_the_incompressible_half_space_alone(beta):
+def test_friction_leaves_the_incompressible_half_space_alone(beta, verification_record):
     free, _ = press(annulus(beta), HALF_SPACE)
     rough, _ = press(annulus(beta), HALF_SPACE, friction=1.0)
     assert rough == pytest.approx(free, rel=1e-3), "a normal load moves an incompressible surface only along its normal"
+    known = {"reference": "without friction", "kind": "exact", "mesh": "axisymmetric, graded", "tolerance": 1e-3}
+    verification_record("annulus on an incompressible half-space, with friction", rough, free, **known)
 
 
 def test_friction_matters_on_a_compressible_half_space():

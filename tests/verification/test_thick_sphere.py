@@ -97,12 +97,15 @@ def assert_stretch(measure: str, body: Body, solved: Equilibrium, la: float) -> 
     assert_close(actual, la - 1, STRETCH_TOLERANCE[measure])
 
 
-def test_the_closed_form_gives_the_printed_numbers():
+def test_the_closed_form_gives_the_printed_numbers(verification_record):
     def check(c10, c01):
         for la, pressure in PRINTED.items():
             assert abs(exact_pressure(la, c10, c01) - pressure) <= 6e-9  # printed to eight digits
 
     check(C10, C01)
+    found = [exact_pressure(la, C10, C01) for la in PRINTED]
+    known = {"reference": "printed to eight digits", "kind": "published", "mesh": "closed form", "scale": 1.0, "tolerance": 6e-9}
+    verification_record("thick sphere, closed form", found, list(PRINTED.values()), **known)
     assert_kills(check, swapped=(C01, C10))
 
 

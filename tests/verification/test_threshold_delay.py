@@ -92,7 +92,7 @@ def test_without_filter_only_the_level_remains(verification_record):
     assert_kills(check, level=(1.0,), swapped=(SMALL_RATE / PLATE_RATE,))
 
 
-def test_lags_cancel_for_a_level_far_above_the_lag():
+def test_lags_cancel_for_a_level_far_above_the_lag(verification_record):
     """Both readings lag by the same time: what remains is the level's own error, whatever the cut-off.
 
     Mutants: an unfiltered capture, and a low level, which triggers while the large sensor still lags.
@@ -103,6 +103,9 @@ def test_lags_cancel_for_a_level_far_above_the_lag():
         assert computed == pytest.approx(PLATE_RATE * level / SMALL_RATE, abs=PLATE_RATE / 16_000 + 3.2e-5)
 
     check(0.1)
+    found, expected = ramps(capture="filtered").ideal_error(LowPass(cutoff=10.0), 0.1), PLATE_RATE * 0.1 / SMALL_RATE
+    known = {"reference": "error of the level alone", "kind": "exact", "mesh": "signals at 16 kHz", "scale": 1.0}
+    verification_record("filtered capture, pressure error", found, expected, tolerance=PLATE_RATE / 16_000 + 3.2e-5, **known)
     assert_kills(check, unfiltered=(0.1, "unfiltered"), low_level=(1e-4,))
     assert ramps().ideal_error(LowPass(cutoff=10.0), 1e-4) < 0
 

@@ -91,7 +91,7 @@ def body_and_unknowns(measure: str, material: Material, *, relaxing: bool, resis
 @pytest.mark.parametrize("resisting", [0.0, 3.0])
 @pytest.mark.parametrize("relaxing", [False, True], ids=["elastic", "relaxing"])
 @pytest.mark.parametrize("measure", MEASURES)
-def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, relaxing, resisting):
+def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, relaxing, resisting, verification_record):
     material = PrincipalOgden(modulus=MODULUS, alpha=3.0, bulk_modulus=2e4)
     body, unknowns = body_and_unknowns(measure, material, relaxing=relaxing, resisting=resisting)
     assert body.forms == (None, "invariants")
@@ -103,6 +103,8 @@ def test_interpreted_elements_have_the_terms_of_the_readable_forms(measure, rela
             assert_close(computed, expected if isinstance(expected, np.ndarray) else expected.toarray(), 1e-12)
 
     check(body)
+    known = {"reference": "readable forms", "kind": "invariance", "mesh": f"{measure}, few cells", "tolerance": 1e-12}
+    verification_record("residual of an interpreted law", interpreted[0], forms.residual(body, unknowns), **known)
     harder = PrincipalOgden(modulus=MODULUS, alpha=3.0 + 1e-6, bulk_modulus=2e4)
     assert_kills(check, exponent=(body_and_unknowns(measure, harder, relaxing=relaxing, resisting=resisting)[0],))
 

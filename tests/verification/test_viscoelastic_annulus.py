@@ -35,7 +35,7 @@ def printed_displacement(force, ratio, t):
 
 
 @pytest.mark.parametrize("ratio", [0.1, 0.5, 0.9])
-def test_the_printed_displacement(ratio):
+def test_the_printed_displacement(ratio, verification_record):
     """Rates cut in their second or third digit and amplitudes cut at 0.01 leave 0.3 % of the displacement up to 2 s.
 
     Mutants: the last column of the table as retardation times, and the table as 1 / E.
@@ -47,6 +47,10 @@ def test_the_printed_displacement(ratio):
         np.testing.assert_allclose(annulus.creep_displacement(1.5, t), printed_displacement(1.5, ratio, t), rtol=0.003)
 
     check("viscosities", "half_shear")
+    annulus = ViscoelasticAnnulus(RADIUS, ratio, atrial_shear_compliance("viscosities", "half_shear"), "thesis_4_2_21")
+    found, printed = annulus.creep_displacement(1.5, t), printed_displacement(1.5, ratio, t)
+    known = {"reference": "thesis, eq. 4.6.4, with its cut digits", "kind": "published", "mesh": "closed form"}
+    verification_record("annulus on the atrium, creep", found, printed, tolerance=0.003, **known)
     assert_kills(check, times=("retardation_times", "half_shear"), compliance=("viscosities", "tensile"))
 
 
