@@ -38,7 +38,7 @@ def verification_record(request: pytest.FixtureRequest) -> Callable[..., None]:
     """Keeps what a check found; of the cases of one test with one mesh, the one that is farthest off.
 
     ``found`` and ``expected`` are compared relative to ``scale``, by default the largest size expected; an ``order`` is compared
-    with ``theory``. ``kind`` is one of ``KINDS``.
+    with ``theory`` and needs its tolerance. ``kind`` is one of ``KINDS``.
     """
     kept = request.config.stash.setdefault(FOUND, {})
     test = request.node.nodeid.partition("[")[0]
@@ -57,6 +57,7 @@ def verification_record(request: pytest.FixtureRequest) -> Callable[..., None]:
         theory: float | None = None,
     ) -> None:
         assert kind in KINDS
+        assert theory is None or tolerance is not None, "the page of records shows what an order may be off"
         error = None if found is None else _relative_error(found, expected, scale)
         row = {"test": test, "check": check, "reference": reference, "kind": kind, "mesh": mesh, "error": error}
         row |= {"tolerance": tolerance, "order": order, "theory": theory}

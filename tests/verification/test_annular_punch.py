@@ -195,7 +195,7 @@ def test_small_holes(verification_record):
     check("thesis_4_2_21", 4)
     errors = np.abs(force_factor(beta, "small_hole_series") - kappa)
     known = {"reference": "series broken off before the seventh power", "kind": "convergence", "mesh": "integral equation"}
-    verification_record("small hole, force factor", order=float(np.log2(errors[2] / errors[1])), theory=7, **known)
+    verification_record("small hole, force factor", order=float(np.log2(errors[2] / errors[1])), theory=7, tolerance=0.1, **known)
     assert_kills(check, thesis=("thesis_4_2_21", 7), series=("small_hole_series", 4), smythe=("smythe", 7))
 
 

@@ -105,7 +105,9 @@ def test_lags_cancel_for_a_level_far_above_the_lag(verification_record):
     check(0.1)
     found, expected = ramps(capture="filtered").ideal_error(LowPass(cutoff=10.0), 0.1), PLATE_RATE * 0.1 / SMALL_RATE
     known = {"reference": "error of the level alone", "kind": "exact", "mesh": "signals at 16 kHz", "scale": 1.0}
-    verification_record("filtered capture, pressure error", found, expected, tolerance=PLATE_RATE / 16_000 + 3.2e-5, **known)
+    verification_record(
+        "threshold, error in N of a level far above the lag", found, expected, tolerance=PLATE_RATE / 16_000 + 3.2e-5, **known
+    )
     assert_kills(check, unfiltered=(0.1, "unfiltered"), low_level=(1e-4,))
     assert ramps().ideal_error(LowPass(cutoff=10.0), 1e-4) < 0
 
