@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import json
 import re
 import shutil
@@ -103,3 +104,17 @@ def test_a_record_names_tests_that_exist():
         assert re.search(rf"^def {name}\(", (ROOT / place).read_text(encoding="utf-8"), re.M), f"{row['test']} is gone"
         assert row["error"] is not None or abs(row["order"] - row["theory"]) <= row["tolerance"]
         assert row["error"] is None or row["tolerance"] is None or row["error"] <= row["tolerance"] * (1 + 1e-9)
+
+
+ANSWERS_YES_OR_NO = re.compile(r"_(seen|refused|would|not|no)(_|$)")
+"""Names of verification tests without a record: a wrong model is seen, something is refused, would fail, or is not so."""
+
+
+def test_a_verification_test_records_what_it_found_or_says_in_its_name_that_it_answers_yes_or_no():
+    silent = []
+    for path in sorted((ROOT / "tests" / "verification").glob("test_*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.FunctionDef) and node.name.startswith("test_") and not ANSWERS_YES_OR_NO.search(node.name):
+                asked = {argument.arg for argument in [*node.args.args, *node.args.kwonlyargs]}
+                silent += [] if "verification_record" in asked else [f"{path.name}: {node.name}"]
+    assert not silent, "these record no row: " + ", ".join(silent)

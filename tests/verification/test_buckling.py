@@ -18,6 +18,10 @@ ABOUT_EULER = 0.03
 lowers and raises the load by about that, and shear lowers it by four times that over 1.2."""
 
 
+FROM_BOTH_SIDES = {"kind": "exact", "mesh": "2 x 24 cells", "reference": "Euler 1744", "tolerance": ABOUT_EULER}
+"""Of a record: stable at the one share of the buckling load and unstable at the other, so that the error is at most theirs."""
+
+
 def euler(stiffness, length):
     """Buckling force pi^2 E I / l^2 of the column with the bending stiffness E I and the effective length l (Euler 1744)."""
     return np.pi**2 * stiffness / length**2
@@ -39,10 +43,11 @@ def warned(result):
 
 
 @pytest.mark.parametrize(("share", "unstable"), [(1 - ABOUT_EULER, False), (1 + ABOUT_EULER, True)])
-def test_a_wide_column_under_a_dead_load(share, unstable, one_thread):
+def test_a_wide_column_under_a_dead_load(share, unstable, one_thread, verification_record):
     plane = 6 * C10 / 0.75 * WIDTH**3 / 12
     load = {"kind": "traction", "y": -share * euler(plane, 2 * HEIGHT) / WIDTH}
     assert bool(warned(column("plane_strain", **load))) is unstable
+    verification_record("buckling load of a wide column, from both sides", share, 1.0, **FROM_BOTH_SIDES)
     assert not warned(column("plane_strain", c10=2 * C10, **load)), "a column of twice the modulus does not buckle"
 
 
@@ -59,21 +64,24 @@ def test_a_small_load_across_leads_to_the_buckled_column(one_thread, verificatio
 
 
 @pytest.mark.parametrize(("share", "motions"), [(1 - ABOUT_EULER, ""), (1 + ABOUT_EULER, "2 motions of the body lower")])
-def test_a_square_column_buckles_either_way(share, motions, one_thread):
+def test_a_square_column_buckles_either_way(share, motions, one_thread, verification_record):
     load = {"kind": "traction", "z": -share * euler(6 * C10 * WIDTH**4 / 12, 2 * HEIGHT) / WIDTH**2}
     assert [motions in warning for warning in warned(column("3d", **load))] == [True] * bool(motions)
+    known = FROM_BOTH_SIDES | {"mesh": "2 x 2 x 24 cells"}
+    verification_record("buckling load of a square column, from both sides", share, 1.0, **known)
 
 
 @pytest.mark.parametrize(("share", "unstable"), [(1 - ABOUT_EULER, False), (1 + ABOUT_EULER, True)])
-def test_a_column_between_clamps_that_come_closer(share, unstable, one_thread):
+def test_a_column_between_clamps_that_come_closer(share, unstable, one_thread, verification_record):
     plane = 6 * C10 / 0.75
     shortening = share * euler(plane * WIDTH**3 / 12, HEIGHT / 2) / (plane * WIDTH) * HEIGHT
     assert bool(warned(column("plane_strain", kind="displacement", x=0.0, y=-shortening))) is unstable
+    verification_record("shortening at which a clamped column buckles, from both sides", share, 1.0, **FROM_BOTH_SIDES)
     assert not warned(column("plane_strain", kind="displacement", x=0.0, y=shortening)), "in tension it stays straight"
 
 
 @pytest.mark.parametrize(("share", "unstable"), [(1 - ABOUT_EULER, False), (1 + ABOUT_EULER, True)])
-def test_a_ring_under_outer_pressure_is_flattened(share, unstable, one_thread):
+def test_a_ring_under_outer_pressure_is_flattened(share, unstable, one_thread, verification_record):
     """Of a pressure p that follows, 3 E I / r^3 for each length of the middle line (Levy 1884); the thickness is a twentieth."""
     middle, outer = 20e-3, 20.5e-3
     thickness = 2 * (outer - middle)
@@ -83,10 +91,12 @@ def test_a_ring_under_outer_pressure_is_flattened(share, unstable, one_thread):
     problem = {"dimension": "plane_strain", "geometry": ring, "material": {"kind": "neo_hookean", "c10": C10}}
     result = BoundaryValueProblem.model_validate(problem | {"conditions": [load], "asked": asked("volume")}).run()
     assert bool(warned(result)) is unstable
+    known = FROM_BOTH_SIDES | {"mesh": "2 cells x 30 around a quarter", "reference": "Levy 1884"}
+    verification_record("pressure that flattens a ring, from both sides", share, 1.0, **known)
 
 
 @pytest.mark.parametrize(("share", "unstable"), [(0.999, False), (1.001, True)])
-def test_a_cube_pulled_alike_on_all_sides(share, unstable, one_thread):
+def test_a_cube_pulled_alike_on_all_sides(share, unstable, one_thread, verification_record):
     """Rivlin's cube of neo-Hookean material, pulled by dead tractions T, is unstable from T = 2 G on (Rivlin 1974): exact."""
     pulled = [
         {"kind": "traction", "face": face, axis: share * 4 * C10}
@@ -94,6 +104,8 @@ def test_a_cube_pulled_alike_on_all_sides(share, unstable, one_thread):
     ]
     problem = {"geometry": CUBE, "material": {"kind": "neo_hookean", "c10": C10}, "conditions": [*PLANES, *pulled]}
     assert bool(warned(result_of(**problem, asked=asked("volume")))) is unstable
+    known = {"reference": "Rivlin 1974", "kind": "exact", "mesh": "one cell", "tolerance": 1e-3}
+    verification_record("traction from which on Rivlin's cube is unstable, from both sides", share, 1.0, **known)
 
 
 def squeezed(stretch, cells):

@@ -91,6 +91,6 @@ def test_graded_cells_press_over_a_hard_ball_as_tetrahedra_do(verification_recor
 
 
 @pytest.mark.slow
-def test_two_layers_around_a_hard_ball_are_too_few(monkeypatch):
+def test_two_layers_around_a_hard_ball_would_be_too_few(monkeypatch):
     assert with_layers(2, monkeypatch) > LAYERED
     assert with_layers(1, monkeypatch) > 5 * LAYERED

@@ -83,10 +83,14 @@ def test_random_affine_maps_are_exact(measure, name, seed, verification_record):
 
 @pytest.mark.parametrize("measure", ["plane_strain", "solid"])
 @pytest.mark.parametrize("name", MATERIALS)
-def test_resistance_to_what_the_pressure_leaves_changes_no_exact_state(measure, name):
+def test_resistance_to_what_the_pressure_leaves_changes_no_exact_state(measure, name, verification_record):
     F = random_gradient(11, MATERIALS[name], 3 if measure == "solid" else 2)
     # Newton starts nearer: a patch that is compressed to 0.86 of its volume has another equilibrium 4 % away.
-    assert_patch(*solve_patch(measure, MATERIALS[name], F, volume_stiffness=3.0, noise=0.003))
+    body, solved, displacement, stress = solve_patch(measure, MATERIALS[name], F, volume_stiffness=3.0, noise=0.003)
+    assert_patch(body, solved, displacement, stress)
+    known = {"reference": "Irons & Razzaque 1972", "kind": "exact", "mesh": f"{measure}, distorted", "tolerance": TOLERANCE}
+    found = body.space.split(solved.unknowns)[0]
+    verification_record("patch test with resistance to changes of volume, displacement", found, displacement, **known)
 
 
 @pytest.mark.parametrize("measure", ["plane_strain", "solid"])
@@ -104,12 +108,15 @@ def test_resistance_to_all_change_of_volume_is_seen(measure):
 
 @pytest.mark.parametrize("name", MATERIALS)
 @pytest.mark.parametrize("radial", [0.9, 1.2])
-def test_uniform_stretches_of_an_axisymmetric_body_are_exact(name, radial):
+def test_uniform_stretches_of_an_axisymmetric_body_are_exact(name, radial, verification_record):
     material = MATERIALS[name]
     axial = 3 - 2 * radial if isinstance(material, LinearElastic) else radial**-2
     if material.bulk_modulus is not None and material.bulk_modulus < 1e6:
         axial *= 1.1
-    assert_patch(*solve_patch("axisymmetric", material, np.diag([radial, axial, radial])))
+    body, solved, displacement, stress = solve_patch("axisymmetric", material, np.diag([radial, axial, radial]))
+    assert_patch(body, solved, displacement, stress)
+    known = {"reference": "Irons & Razzaque 1972", "kind": "exact", "mesh": "axisymmetric, distorted", "tolerance": TOLERANCE}
+    verification_record("patch test, displacement", body.space.split(solved.unknowns)[0], displacement, **known)
 
 
 @pytest.mark.parametrize("measure", ["axisymmetric", "plane_strain", "solid"])

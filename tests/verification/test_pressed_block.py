@@ -113,13 +113,16 @@ def test_friction_stays_in_its_cone_and_forces_balance(measure, law, verificatio
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_unloading_returns_the_block(measure):
+def test_unloading_returns_the_block(measure, verification_record):
     """Mutant: a plane that stays a ten-thousandth below the height of the block."""
 
     def check(height):
         press = Press(measure, Coulomb(friction=0.0), cells=2).to(0.9).to(height)
         assert press.state.pressure.max() == 0.0
         assert np.abs(press.displacement).max() < 1e-9
+        return press.displacement
 
-    check(1.0 + 1e-6)
+    left = check(1.0 + 1e-6)
+    known = {"reference": "the block at rest", "kind": "exact", "mesh": f"{measure}, 2 cells per side", "tolerance": 1e-9}
+    verification_record("displacement left after unloading, over the height", left, 0.0, scale=1.0, **known)
     assert_kills(check, low=(1.0 - 1e-4,))

@@ -39,7 +39,7 @@ def test_the_whole_is_pressed_as_its_quarter_is(one_thread, verification_record)
         between_plates("quarter", [{"side": "top", "y": -approach}], force)["force"] for approach in (PRESSED / 2, PRESSED)
     ]
     check(quarters[0])
-    known = {"reference": "its quarter", "kind": "invariance", "mesh": "cells of four quarters", "tolerance": 1e-5}
+    known = {"reference": "its quarter", "kind": "invariance", "mesh": "16 x 16 cells", "tolerance": 1e-5}
     verification_record("force of a pressed cylinder", whole, 2 * quarters[0], **known)
     assert_kills(check, all_of_it=(quarters[1],))
 

@@ -71,8 +71,11 @@ def test_forces_are_a_hundredth(verification_record):
 
 @pytest.mark.slow
 @pytest.mark.parametrize("kind", ["model_based", "hypotheses"])
-def test_the_lump_is_found_at_a_tenth_of_the_place(kind, tmp_path):
+def test_the_lump_is_found_at_a_tenth_of_the_place(kind, tmp_path, verification_record):
     small, large = (found(part, tmp_path / f"{part:g}", kind=kind) for part in (TENTH, 1.0))
     for name in ("estimated_center", "estimated_radius"):
         few, many = (np.array(result.quantities[name].value) for result in (small, large))
         assert np.abs(few - TENTH * many).max() < PLACES * TENTH * 40e-3
+        known = {"reference": "the grasp of ten times the size", "kind": "invariance", "mesh": "default", "tolerance": PLACES}
+        words = f"lump in a grasp of a tenth of the size, {name.replace('_', ' ')}, {kind.replace('_', '-')}"
+        verification_record(f"{words}, over the side", few, TENTH * many, scale=TENTH * 40e-3, **known)

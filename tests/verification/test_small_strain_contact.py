@@ -265,7 +265,7 @@ def test_friction_leaves_the_incompressible_half_space_alone(beta, verification_
     verification_record("annulus on an incompressible half-space, with friction", rough, free, **known)
 
 
-def test_friction_matters_on_a_compressible_half_space():
+def test_friction_on_a_compressible_half_space_is_seen():
     free, _ = press(Punch(radius=RADIUS), HALF_SPACE, poisson_ratio=0.3)
     rough, _ = press(Punch(radius=RADIUS), HALF_SPACE, poisson_ratio=0.3, friction=1.0)
     assert rough > free * 1.01

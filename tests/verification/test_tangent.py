@@ -30,6 +30,7 @@ MEASURES = ["axisymmetric", "plane_strain", "solid"]
 KINDS = sorted(name for name in kinds(Material))
 RATIO_TOLERANCE = 0.02
 """Of the ratio 4: the third-order term over the second at the steps taken."""
+TAYLOR = {"reference": "Taylor's theorem", "kind": "invariance"}
 
 
 @dataclass(frozen=True)
@@ -70,13 +71,14 @@ def remainders(map_: Map, unknowns: Array, direction: Array) -> Array:
     return np.array([np.linalg.norm(c - e * slope) / np.linalg.norm(c) for c, e in zip(changes, steps, strict=True)]) * steps
 
 
-def assert_taylor(map_: Map, body: Body, *, linear: bool = False) -> None:
-    """The last ratio is 4, or there is no remainder but round-off if the map is linear."""
+def assert_taylor(map_: Map, body: Body, *, linear: bool = False) -> float:
+    """The last ratio is 4, or there is no remainder but round-off if the map is linear; the ratio, or the remainder."""
     sizes = remainders(map_, *state_and_direction(body))
     if linear:
         assert sizes.max() <= 1e-13, f"remainders {sizes} of a linear map"
-    else:
-        assert abs(sizes[-2] / sizes[-1] - 4) <= RATIO_TOLERANCE, f"ratios {sizes[:-1] / sizes[1:]}"
+        return float(sizes.max())
+    assert abs(sizes[-2] / sizes[-1] - 4) <= RATIO_TOLERANCE, f"ratios {sizes[:-1] / sizes[1:]}"
+    return float(sizes[-2] / sizes[-1])
 
 
 def body_map(body: Body, error: float = 0.0) -> Map:
@@ -141,21 +143,22 @@ def test_tangent_of_a_body(measure, kind, verification_record):
 
 @pytest.mark.parametrize("bulk_modulus", [None, 3.0])
 @pytest.mark.parametrize("measure", MEASURES)
-def test_tangent_of_a_body_that_resists_changes_of_volume(measure, bulk_modulus):
+def test_tangent_of_a_body_that_resists_changes_of_volume(measure, bulk_modulus, verification_record):
     """Mutants: the tangent without the resistance, and with another one."""
     material = NeoHookean(c10=0.6, bulk_modulus=bulk_modulus)
     body = patch(measure, material, 3.0)[1]
 
     def check(stiffness):
         other = patch(measure, material, stiffness)[1]
-        assert_taylor(Map(body.residual, body_map(other).slope), body)
+        return assert_taylor(Map(body.residual, body_map(other).slope), body)
 
-    check(3.0)
+    known = TAYLOR | {"mesh": f"{measure}, distorted", "tolerance": RATIO_TOLERANCE / 4}
+    verification_record("remainder of the tangent over half the step, resistance to changes of volume", check(3.0), 4.0, **known)
     assert_kills(check, none=(0.0,), another=(3.03,))
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_tangent_of_a_linear_body_has_no_remainder(measure):
+def test_tangent_of_a_linear_body_has_no_remainder(measure, verification_record):
     """Mutant: the tangent of large strains at the same state."""
     material = LinearElastic.example()
     _, body = patch(measure, material)
@@ -165,26 +168,34 @@ def test_tangent_of_a_linear_body_has_no_remainder(measure):
     def check(material):
         slope = body_map(patch(measure, material)[1]).slope(unknowns, direction)
         assert_close(slope, change, 1e-12)  # round-off
+        return slope
 
-    check(material)
+    known = TAYLOR | {"mesh": f"{measure}, distorted", "tolerance": 1e-12}
+    verification_record("tangent of a linear body, change of the forces", check(material), change, **known)
     large = NeoHookean(c10=material.shear_modulus / 2, bulk_modulus=material.bulk_modulus)
     assert_kills(check, large_strain=(large,))
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_tangent_of_a_follower_pressure(measure):
+def test_tangent_of_a_follower_pressure(measure, verification_record):
     """In plane strain the force is linear in the displacement."""
     mesh, body = patch(measure)
-    assert_taylor(
-        load_map(body, FollowerPressure(body.space, outer_faces(mesh), body.pattern, 0.7)), body, linear=measure == "plane_strain"
-    )
+    linear, known = measure == "plane_strain", TAYLOR | {"mesh": f"{measure}, distorted"}
+    found = assert_taylor(load_map(body, FollowerPressure(body.space, outer_faces(mesh), body.pattern, 0.7)), body, linear=linear)
+    if linear:
+        verification_record("remainder of the tangent, pressure", found, 0.0, scale=1.0, tolerance=1e-13, **known)
+    else:
+        words = "remainder of the tangent over half the step, pressure"
+        verification_record(words, found, 4.0, tolerance=RATIO_TOLERANCE / 4, **known)
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-def test_tangent_of_a_traction_that_depends_on_the_place(measure):
+def test_tangent_of_a_traction_that_depends_on_the_place(measure, verification_record):
     mesh, body = patch(measure)
     assembly = SurfaceAssembly(body.space.surface_points(outer_faces(mesh)), body.pattern, body.space.dim)
-    assert_taylor(traction_map(body, assembly), body)
+    found = assert_taylor(traction_map(body, assembly), body)
+    known = TAYLOR | {"mesh": f"{measure}, distorted", "tolerance": RATIO_TOLERANCE / 4}
+    verification_record("remainder of the tangent over half the step, traction", found, 4.0, **known)
     with pytest.raises(AssertionError):
         assert_taylor(traction_map(body, assembly, wrong_sign=True), body)
 
@@ -207,7 +218,7 @@ def test_a_pressure_that_does_not_follow_is_seen(measure):
 
 @pytest.mark.parametrize("measure", MEASURES)
 @pytest.mark.parametrize("bulk_modulus", [None, 50.0])
-def test_tangent_of_a_body_is_symmetric(measure, bulk_modulus):
+def test_tangent_of_a_body_is_symmetric(measure, bulk_modulus, verification_record):
     """Mutant: a pressure that follows a part of the surface, which has no potential, counted with the body."""
     mesh, body = patch(measure, MooneyRivlin2(c10=1.0, c01=0.25, bulk_modulus=bulk_modulus))
     unknowns, _ = state_and_direction(body)
@@ -219,11 +230,14 @@ def test_tangent_of_a_body_is_symmetric(measure, bulk_modulus):
 
     tangent = body.tangent(unknowns)
     check(tangent)
+    matrix = body.pattern.matrix(tangent).toarray()
+    known = {"reference": "its transpose", "kind": "invariance", "mesh": f"{measure}, distorted", "tolerance": 1e-14}
+    verification_record("tangent of a body", matrix, matrix.T, **known)
     assert_kills(check, follower=(tangent + entries(load, body, body.space.split(unknowns)[0]),))
 
 
 @pytest.mark.parametrize("measure", ["plane_strain", "solid"])
-def test_tangent_of_a_pressure_on_a_closed_surface_is_symmetric(measure):
+def test_tangent_of_a_pressure_on_a_closed_surface_is_symmetric(measure, verification_record):
     """A uniform pressure all around has the potential p V (Schweizerhof & Ramm 1984); on a part of the surface it has not."""
     mesh, body = patch(measure)
     displacement = body.space.split(state_and_direction(body)[0])[0]
@@ -232,3 +246,11 @@ def test_tangent_of_a_pressure_on_a_closed_surface_is_symmetric(measure):
         matrix = body.pattern.matrix(entries(pressure, body, displacement)).toarray()
         asymmetry = np.abs(matrix - matrix.T).max() / np.abs(matrix).max()
         assert (asymmetry < 1e-13) == symmetric
+        if symmetric:
+            known = {
+                "reference": "Schweizerhof & Ramm 1984",
+                "kind": "exact",
+                "mesh": f"{measure}, distorted",
+                "tolerance": 1e-13,
+            }
+            verification_record("tangent of a pressure all around, asymmetry", asymmetry, 0.0, scale=1.0, **known)
