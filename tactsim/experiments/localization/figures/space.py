@@ -67,7 +67,7 @@ def space_figure(result: Result, view: SpaceView) -> Figure:
     """The pictures beside each other, with the axes and the scale of the bars."""
     rendering = view.rendering
     images = rendering.pictures()
-    with result_figure(result, (12.0, 5.9), "Localization", remark=result.reason.partition(";")[0]) as figure:
+    with result_figure(result, (12.0, 6.2), "Localization", remark=result.reason.partition(";")[0]) as figure:
         figure.set_layout_engine("constrained", h_pad=0.08)
         axes = figure.subplots(1, 2)
         for axis, camera, image, title in zip(axes, rendering.cameras, images, view.titles, strict=True):
