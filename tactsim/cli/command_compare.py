@@ -94,13 +94,14 @@ def report(
 
         texts = {TABLE_FILE: comparison.csv_text(), "comparison.md": comparison.markdown_text()}
         files = {name: text.encode() for name, text in texts.items()}
-        drawn, remark = form != "none", ""
-        if drawn:
+        remark = ""
+        if form != "none":
             from tactsim.cli.figures.comparison import drawn_comparison, has_figure
 
-            drawn = has_figure(results, comparison)
-            remark = "" if drawn else "; no figure, for no two of the results share a number"
-            files |= {f"comparison.{form}": drawn_comparison(results, comparison, form)} if drawn else {}
+            if has_figure(results, comparison):
+                files[f"comparison.{form}"] = drawn_comparison(results, comparison, form)
+            else:
+                remark = "; no figure, for no two of the results share a number"
         write_files(files, out)
         if not quiet:
             console.out(f"comparison {one_line(out)}{remark}")

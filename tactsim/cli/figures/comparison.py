@@ -138,12 +138,13 @@ def _draw_curves(axis: Axes, results: Mapping[str, Result], pair: tuple[str, str
     shortest_last = sorted(series, key=lambda name: -np.nanmax(np.abs(series[name][0])))
     for number, (name, (x, y)) in enumerate(series.items()):
         dash, mark = DASHES[number % len(DASHES)], MARKS[number // len(DASHES) % len(MARKS)]
-        ends: list[int] | None = [-1]
-        if len(x) <= FEW_STEPS:
-            dash, mark, ends = (dash, mark or ".", None) if len(x) > 1 else ("none", mark or "o", None)
+        if len(x) == 1:
+            dash, mark = "none", mark or "o"
+        few = len(x) <= FEW_STEPS
+        mark = mark or ("." if few else "")
         label = _labelled(name, results[name])
         above = 2 + shortest_last.index(name) / len(series)  # where two coincide, both are seen
-        style: dict[str, Any] = {"linestyle": dash, "marker": mark, "markevery": ends, "zorder": above}
+        style: dict[str, Any] = {"linestyle": dash, "marker": mark, "markevery": None if few else [-1], "zorder": above}
         style["markersize"] = 9 if mark == "." else 5
         axis.plot(scales[0][0] * x, scales[1][0] * y, label=label, **style)
     reached = [place for result in results.values() if (place := _threshold(result, pair)) is not None]
