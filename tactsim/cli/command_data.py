@@ -18,7 +18,7 @@ from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     from tactsim.dataset.ranking.samples import JudgedSamples
-    from tactsim.experiments.grasp.both_jaws import Source
+    from tactsim.interfaces.both_jaws import Source
 
 NAME = "data"
 SUMMARY = "check, describe or export a data set, judge estimators on it"
@@ -180,7 +180,7 @@ def _refuse_file(path: Path) -> None:
 def _samples(arguments: argparse.Namespace, split: list[str] | None = None) -> JudgedSamples:
     """The samples that are judged or trained on, as the options say."""
     from tactsim.dataset.ranking.samples import judged_samples, stored_experiment
-    from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE
+    from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE
 
     references, noise = _references(arguments), _noise(arguments)
     source: Source = arguments.readings or (READ_FORCE if stored_experiment(arguments.store).readout else TAXEL_FORCE)

@@ -12,6 +12,7 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 from textwrap import dedent
+from typing import Any
 
 import grimp
 import pytest
@@ -162,6 +163,31 @@ registered = {base.__name__: sorted(kinds(base)) for base in (Experiment, Scene,
 print(json.dumps({"package": tactsim.__path__[0], "code": code, "kinds": registered}))
 """
 
+SWEPT = """
+schema: tactsim/sweep/1
+title: What is left is swept
+experiment:
+  kind: closed_form
+  material: {kind: neo_hookean, c10: 3 kPa}
+  outer_radius: {uniform: [3 mm, 4 mm]}
+  loading: {control: displacement, pieces: [{kind: ramp, to: 0.1 mm, duration: 1 s}]}
+  points: 5
+sweep: {samples: 2}
+"""
+ALONE = """
+import json, sys
+import tactsim
+from tactsim.cli.entry import main
+
+runs = [["run", "case.yaml", "--out", out, "--quiet"] for out in ("first", "second")]
+shown = [["compare", "first", "second"], ["list", "kinds"], ["schema", "--out", "case.schema.json"]]
+data = [["sweep", "sweep.yaml", "--out", "annuli.zarr", "--workers", "1", "--quiet"], ["data", "info", "annuli.zarr"]]
+drawn = [["show", place, "--save", place.partition(".")[0] + ".png"] for place in ("first", "annuli.zarr")]
+codes = {" ".join(command): main(command) for command in (*runs, *shown, *data, *drawn)}
+print(json.dumps({"package": tactsim.__path__[0], "codes": codes}))
+"""
+"""What a user does with a result and with a data set, of any kind of experiment."""
+
 
 def start_anew() -> None:
     """What a process that starts anew does not know: the spring, and which modules the folders of experiments hold."""
@@ -261,6 +287,15 @@ def test_a_folder_that_the_tiers_do_not_name_builds_on_no_other() -> None:
     assert builders(set(built_on()) - (named - {"durometer"})) == {"durometer"}
 
 
+def answer_of(folder: Path, script: str, *arguments: str) -> dict[str, Any]:
+    """What a script prints last, run with the package in a folder."""
+    command = [sys.executable, "-W", "error", "-c", script, *arguments]
+    environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
+    done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=folder, check=False)
+    assert done.returncode == 0, done.stderr
+    return json.loads(done.stdout.splitlines()[-1])
+
+
 def test_the_package_works_without_the_folders_that_nothing_builds_on(tmp_path: Path) -> None:
     removed = {folder for folder, users in built_on().items() if not users}
     assert {"film", "dma", "switch_probe"} <= removed
@@ -270,13 +305,24 @@ def test_the_package_works_without_the_folders_that_nothing_builds_on(tmp_path: 
         shutil.rmtree(copy / "experiments" / name)
     case = tmp_path / "case.yaml"
     case.write_text(QUICK_CASE, encoding="utf-8")
-    command = [sys.executable, "-W", "error", "-c", WITHOUT, str(case), str(tmp_path / "result")]
-    environment = {**os.environ, "PYTHONPATH": str(tmp_path), "PYTHONDONTWRITEBYTECODE": "1"}
-    done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=tmp_path, check=False)
-    assert done.returncode == 0, done.stderr
-    answer = json.loads(done.stdout.splitlines()[-1])
+    answer = answer_of(tmp_path, WITHOUT, str(case), str(tmp_path / "result"))
     assert (answer["package"], answer["code"]) == (str(copy), 0)
     for base in POINTS:
         left = {kind for kind, cls in kinds(base).items() if cls.__module__.split(".")[2] not in removed}
         assert set(answer["kinds"][base.__name__]) == left, base.__name__
     assert read_result(tmp_path / "result").result.kind == "closed_form"
+
+
+def test_a_family_that_builds_on_none_is_all_that_its_cases_and_data_sets_need(tmp_path: Path) -> None:
+    copy = tmp_path / "tactsim"
+    shutil.copytree(PACKAGE, copy, ignore=shutil.ignore_patterns("page"))
+    for name in built_on():
+        if name != "annulus":
+            shutil.rmtree(copy / "experiments" / name)
+    for name, text in (("case", QUICK_CASE), ("sweep", SWEPT)):
+        (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
+    answer = answer_of(tmp_path, ALONE)
+    assert answer["package"] == str(copy)
+    assert {command: code for command, code in answer["codes"].items() if code} == {}
+    for name in ("first", "annuli"):
+        assert (tmp_path / f"{name}.png").read_bytes()[:4] == b"\x89PNG"

@@ -14,7 +14,7 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 from matplotlib.figure import FigureBase
 
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, TAXEL_PRESSURE, VOLTAGE
+from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, TAXEL_PRESSURE, VOLTAGE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.outside.text import one_line
 from tactsim.plotting.canvas import PRESSURE_COLOURS, ink_on, scale_of, with_minus

@@ -13,7 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
 from tactsim.cli.figures.compared_maps import draw_maps, taxel_maps
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
+from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
 from tactsim.plotting.canvas import despined, encoded, entitle, new_figure, scale_of, styled

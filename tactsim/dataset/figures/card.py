@@ -11,7 +11,7 @@ from matplotlib.ticker import MaxNLocator
 
 from tactsim.array import Array
 from tactsim.dataset import load
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
+from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import PRESSURE_COLOURS, Plot, despined, scale_of, titled_figure
 

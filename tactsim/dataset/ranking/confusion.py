@@ -14,11 +14,11 @@ from tactsim.dataset.ranking.reference import check_same, warn_of_inclusions
 from tactsim.dataset.ranking.samples import refuse_reopened, stored_experiment
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
 from tactsim.interfaces import Estimator
+from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.readings import ROUNDING_NOISE, noise_in_words
 from tactsim.localization.checked_estimate import estimate_of
 from tactsim.localization.estimators.hypotheses import CLASSES

@@ -11,9 +11,9 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, jaws_over_time, over_time
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, reference_notes, stored_grasp
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, jaws_over_time, over_time
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.results import Result

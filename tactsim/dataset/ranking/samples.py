@@ -19,9 +19,9 @@ from tactsim.dataset.sampling.stored import UNUSABLE, stored_sweep
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, Source
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.localization.source import SAME_CLOSING
+from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, Source
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.interfaces.seeds import SEED
 from tactsim.localization.lump_response import LumpResponse

@@ -9,8 +9,8 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.errors import InputError
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.progress import count_bar
 from tactsim.sensors.matrix_readout import MatrixReadout
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
+from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.contact_history import QUALITY_UNITS
 from tactsim.results.result import Result

@@ -6,10 +6,10 @@ from typing import ClassVar, Literal, Self
 
 from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, jaws_over_time, over_time
 from tactsim.experiments.grasp.scene import GraspScene, ReadGrasp
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings, single_step
 from tactsim.interfaces import Experiment
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, jaws_over_time, over_time
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.outside.input_path import InputPath

@@ -6,9 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE
 from tactsim.experiments.grasp.readings import JawReading
 from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE
 from tactsim.mechanics.outcome.contact_history import LAST
 from tactsim.results.quantity import Quantity
 

@@ -8,11 +8,11 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, TAXEL_PRESSURE, VOLTAGE, jaws_at_end, jaws_over_time
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.lumen_pressure import lumen_history
 from tactsim.experiments.recording import history
 from tactsim.interfaces import Experiment, Inclusion, Recorder
+from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, TAXEL_PRESSURE, VOLTAGE, jaws_at_end, jaws_over_time
 from tactsim.interfaces.recording import ComputedSteps, Values
 from tactsim.interfaces.variable import Variable, label, reading
 from tactsim.mechanics.outcome.contact_history import WHOLE_RUN

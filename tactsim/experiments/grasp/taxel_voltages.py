@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, SATURATED, VOLTAGE
 from tactsim.interfaces import SensorFilm
+from tactsim.interfaces.both_jaws import READ_FORCE, SATURATED, VOLTAGE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results.quantity import Quantity
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout

@@ -11,7 +11,6 @@ from pydantic import Field
 
 from tactsim.array import Array
 from tactsim.errors import InputError, InvalidQuantity
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, Source
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
@@ -24,6 +23,7 @@ from tactsim.experiments.localization.source import (
     with_reference,
 )
 from tactsim.interfaces import Experiment, Inclusion
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, Source
 from tactsim.interfaces.estimate import Estimate
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.interfaces.run import Course, Findings

@@ -11,7 +11,6 @@ from pydantic import Field, model_validator
 from tactsim.analytic.eshelby_ball import stiffness_ratio_of
 from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.experiments.grasp.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, Source
 from tactsim.experiments.grasp.scene import GraspScene, grasp_fields
 from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
@@ -25,6 +24,7 @@ from tactsim.experiments.localization.source import (
     with_reference,
 )
 from tactsim.interfaces import Experiment
+from tactsim.interfaces.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, Source
 from tactsim.interfaces.estimate import Estimate, inclusion_in_words
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, silent_taxels, silent_words
 from tactsim.interfaces.run import Course, Findings

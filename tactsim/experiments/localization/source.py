@@ -12,10 +12,10 @@ from pydantic import ValidationError
 
 from tactsim.array import Array
 from tactsim.errors import InputError
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, Source, has_taxels, jaws_at_end, saturated_taxels
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
+from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, Source, has_taxels, jaws_at_end, saturated_taxels
 from tactsim.interfaces.readings import Readings
 from tactsim.materials.homogeneous import stiffness_ratio
 from tactsim.refusals import first_fault

@@ -10,8 +10,8 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import StorageError, TactsimError
-from tactsim.experiments.grasp.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, has_taxels, jaws_at_end
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
+from tactsim.interfaces.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, has_taxels, jaws_at_end
 from tactsim.interfaces.estimate import PARAMETERS, Estimate, EstimatedInclusion, Region
 from tactsim.interfaces.readings import Readings
 from tactsim.live.sources.recorded import DAMAGE

@@ -8,9 +8,9 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError, shown
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, SATURATED, TAXEL_FORCE, has_taxels, jaws_over_time, saturated_taxels
 from tactsim.experiments.grasp.scene import ChangedShape, GraspScene
 from tactsim.experiments.localization.scene import LocalizedGrasp
+from tactsim.interfaces.both_jaws import READ_FORCE, SATURATED, TAXEL_FORCE, has_taxels, jaws_over_time, saturated_taxels
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.noise import RESOLVED, ReadingNoise, solution_noise
 from tactsim.live.sources.scene import LARGEST_FORCE, LATEST, PageScene, Recording, check_extent

@@ -18,9 +18,9 @@ from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import refuse_holes
 from tactsim.dataset.use.loading import opened, split_names
 from tactsim.errors import InputError, StorageError
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.scene import EmbeddedShape, GraspScene
+from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.recorded import SOURCES, checked_validity, source_noise
 from tactsim.live.sources.scene import PageScene, Recording

@@ -8,10 +8,10 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import InputError, shown
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.grasp.setup import JawSettings
 from tactsim.interfaces import Inclusion
+from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.readings import Readings, named_taxels, silent_taxels, silent_words
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.live.sources.noise import RESOLVED, ReadingNoise

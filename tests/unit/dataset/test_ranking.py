@@ -22,7 +22,7 @@ from tactsim.dataset.ranking.report import against_baseline, as_summary, as_text
 from tactsim.dataset.ranking.samples import Truth, judged_samples
 from tactsim.dataset.ranking.training import seen_in_training
 from tactsim.errors import InputError
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE
+from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import noise_in_words
 from tactsim.localization.estimators.model_based import ModelBasedEstimator

@@ -6,7 +6,6 @@ from typing import Literal
 
 from matplotlib.figure import Figure
 
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, VOLTAGE, has_taxels
 from tactsim.experiments.grasp.figures.history import draw_histories, has_history, panels
 from tactsim.experiments.grasp.figures.maps import MapsLayout, draw_maps, draw_plan
 from tactsim.experiments.grasp.figures.moment import shown_moment
@@ -18,6 +17,7 @@ from tactsim.experiments.grasp.figures.viewed import viewed
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.grasp.scene import GraspScene, SimulatedGrasp
 from tactsim.interfaces import Drawing, ResultFigures
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, VOLTAGE, has_taxels
 from tactsim.plotting.canvas import SKETCH, Plot, result_figure
 from tactsim.plotting.rendered_plot import RenderedPlot
 from tactsim.results import Result, Status

@@ -10,10 +10,10 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, has_taxels, jaws_over_time
 from tactsim.experiments.grasp.figures.parts import LETTERS
 from tactsim.experiments.grasp.history import lumen_columns
 from tactsim.experiments.grasp.scene import GraspScene
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, has_taxels, jaws_over_time
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.plotting.canvas import despined, scale_of
 from tactsim.results import Result

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, has_taxels, jaws_over_time
 from tactsim.experiments.grasp.history import lumen_columns
 from tactsim.experiments.grasp.scene import SimulatedGrasp
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, has_taxels, jaws_over_time
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD
 from tactsim.results import Quantity, Result
 from tactsim.units import format_quantity

@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, jaws_at_end
 from tactsim.experiments.grasp.scene import GraspScene, SimulatedGrasp
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, TAXEL_PRESSURE, jaws_at_end
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import scale_of
 from tactsim.plotting.plane_cut import regions_of

@@ -10,8 +10,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from tactsim.array import Array
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, VOLTAGE, jaws_at_end, jaws_over_time
 from tactsim.interfaces import Drawing, ResultFigures
+from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, VOLTAGE, jaws_at_end, jaws_over_time
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import Plot, despined, result_figure, scale_of
 from tactsim.results import Result

@@ -9,9 +9,9 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.errors import TactsimError
-from tactsim.experiments.grasp.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, has_taxels, jaws_at_end
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
+from tactsim.interfaces.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, has_taxels, jaws_at_end
 from tactsim.interfaces.estimate import EstimatedInclusion
 from tactsim.interfaces.readings import shown_change
 from tactsim.interfaces.solid import Solid

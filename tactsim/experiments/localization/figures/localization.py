@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from typing import Literal
 
-from tactsim.experiments.grasp.both_jaws import TAXEL_FORCE, has_taxels
 from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.figures.space import SPACE, space_figure, space_view
 from tactsim.interfaces import Drawing, ResultFigures
+from tactsim.interfaces.both_jaws import TAXEL_FORCE, has_taxels
 from tactsim.plotting.canvas import Plot
 from tactsim.plotting.rendered_plot import RenderedPlot
 from tactsim.results import Result

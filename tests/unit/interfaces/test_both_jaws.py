@@ -9,8 +9,8 @@ import pytest
 from live_pages import SIDES, made_up_grasp, taxel_forces
 
 from tactsim.errors import InputError, StorageError, UnknownName
-from tactsim.experiments.grasp.both_jaws import READ_FORCE, TAXEL_FORCE, has_taxels, jaws_at_end, jaws_over_time, over_time
 from tactsim.experiments.grasp.matrix_readout import MatrixReadoutRun
+from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, has_taxels, jaws_at_end, jaws_over_time, over_time
 from tactsim.results import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.results.writing import write_result
