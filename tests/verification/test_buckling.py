@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from scipy.optimize import brentq
 from scipy.special import ellipk
 from small_problems import CUBE, PLANES, asked, result_of
@@ -52,15 +53,26 @@ def test_a_wide_column_under_a_dead_load(share, unstable, one_thread, verificati
 
 
 def test_a_small_load_across_leads_to_the_buckled_column(one_thread, verification_record):
+    """Mutants: a column that is a twentieth stiffer, and one with nothing that leads it aside."""
     share, plane = 1.1, 6 * C10 / 0.75 * WIDTH**3 / 12
     traction = share * euler(plane, 2 * HEIGHT) / WIDTH
-    buckled = column("plane_strain", kind="traction", y=-traction, x=0.01 * traction)
     m = brentq(lambda m: (ellipk(m) / (np.pi / 2)) ** 2 - share, 0.0, 0.9)
-    assert not warned(buckled)
-    aside, elastica = float(buckled["aside"].value), 2 * np.sqrt(m) / ellipk(m) * HEIGHT
+    elastica = 2 * np.sqrt(m) / ellipk(m) * HEIGHT
+
+    def pressed(across=0.01, **material):
+        return column("plane_strain", kind="traction", y=-traction, x=across * traction, **material)
+
+    def check(buckled):
+        assert not warned(buckled)
+        aside = float(buckled["aside"].value)
+        assert aside == pytest.approx(elastica, rel=4 * ABOUT_EULER), "a load 1 % larger moves it 4 % more"
+
+    buckled = pressed()
+    check(buckled)
     record = {"reference": "elastica, Euler 1744", "kind": "exact", "mesh": "2 x 24 cells", "tolerance": 4 * ABOUT_EULER}
-    verification_record("deflection of a column pressed to 1.1 of its buckling load", aside, elastica, **record)
-    assert aside == pytest.approx(elastica, rel=4 * ABOUT_EULER), "a load 1 % larger moves it 4 % more"
+    words = "deflection of a column pressed to 1.1 of its buckling load"
+    verification_record(words, float(buckled["aside"].value), elastica, **record)
+    assert_kills(check, stiffer=(pressed(c10=1.05 * C10),), straight=(pressed(across=0.0),))
 
 
 @pytest.mark.parametrize(("share", "motions"), [(1 - ABOUT_EULER, ""), (1 + ABOUT_EULER, "2 motions of the body lower")])

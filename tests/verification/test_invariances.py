@@ -11,12 +11,14 @@ from small_problems import CUBE, EXTENSION, PLANES, result_of
 from solids import assert_close, body_of, box, facets_where, held
 
 from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.history_variables import step_error
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.solvers.linear import direct_solver
 from tactsim.interfaces import Material
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_5 import MooneyRivlin5
+from tactsim.mechanics.paths import history_path
 from tactsim.mesh.quadratic import QuadraticMesh
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -222,8 +224,8 @@ def test_the_forces_of_a_body_balance(measure, verification_record):
         assert_kills(check, radial=(forces,))
 
 
-def test_a_small_load_is_followed_as_closely_in_time_as_one_a_hundred_times_larger(verification_record):
-    """Both in the linear range. An error that counts by at least 1e-7 of the modulus takes 83 steps, not 106: 2.5e-4 off."""
+def test_a_small_load_is_followed_as_closely_in_time_as_one_a_hundred_times_larger(monkeypatch, verification_record):
+    """Both in the linear range. Mutant: an error that counts by at least 1e-7 of the modulus, which takes 83 steps, not 106."""
 
     def extensions(load: float) -> list[float]:
         pieces = [
@@ -241,8 +243,13 @@ def test_a_small_load_is_followed_as_closely_in_time_as_one_a_hundred_times_larg
         )
         return [step.values["number"] / load for step in result.steps]
 
+    def check(small):
+        assert len(small) == pytest.approx(len(large), abs=3)
+        assert small[-1] == pytest.approx(large[-1], rel=2e-5)
+
     large, small = extensions(6e-3), extensions(6e-5)
-    assert len(small) == pytest.approx(len(large), abs=3)
-    assert small[-1] == pytest.approx(large[-1], rel=2e-5)
+    check(small)
     known = {"reference": "a load a hundred times as large", "kind": "invariance", "mesh": "one cell", "tolerance": 2e-5}
     verification_record("relaxing cube under a small load, extension over load", small[-1], large[-1], **known)
+    monkeypatch.setattr(history_path, "step_error", lambda body, state, least: step_error(body, state, max(least, 1e-7 * 6e3)))
+    assert_kills(check, part_of_modulus=(extensions(6e-5),))

@@ -28,12 +28,12 @@ STRESS_TOLERANCE = 1e-2
 COUNTS = {"axisymmetric": [10, 1], "plane_strain": [10, 8], "solid": [10, 8, 1]}
 
 
-def inner_stretch(pressure: float) -> float:
+def inner_stretch(pressure: float, modulus: float = VM56.shear_modulus) -> float:
     """la = r / R at the bore under a pressure."""
 
     def excess(la: float) -> float:
         lb = np.sqrt(1 + (la**2 - 1) * INNER**2 / OUTER**2)
-        return VM56.shear_modulus * (np.log(la / lb) + (lb**-2 - la**-2) / 2) - pressure
+        return modulus * (np.log(la / lb) + (lb**-2 - la**-2) / 2) - pressure
 
     return brentq(excess, 1.0, 4.0, xtol=1e-14)
 
@@ -80,12 +80,19 @@ def assert_bore(measure: str, body: Body, solved: Equilibrium, expected: float =
 
 
 def test_the_closed_form_gives_the_printed_numbers(verification_record):
-    bore = INNER * (inner_stretch(PRESSURE) - 1)
-    assert abs(bore - 7.181871) <= 6e-7  # printed to six digits
+    """Mutants: a modulus without c01, and the stress of Lame's linear tube."""
+
+    def check(la, radial_stress):
+        assert abs(INNER * (la - 1) - 7.181871) <= 6e-7  # printed to six digits
+        for R, printed in ((8.16, -121.634), (10.0, -85.965), (12.0, -56.621), (15.0, -25.138)):
+            assert abs(radial_stress(np.array(R)) - printed) <= 6e-4  # printed to three digits
+
+    la = inner_stretch(PRESSURE)
+    check(la, exact_radial_stress)
     known = {"reference": "ANSYS VM56, printed to six digits", "kind": "published", "mesh": "closed form", "scale": 1.0}
-    verification_record("thick tube, closed form, bore", bore, 7.181871, tolerance=6e-7, **known)
-    for R, stress in ((8.16, -121.634), (10.0, -85.965), (12.0, -56.621), (15.0, -25.138)):
-        assert abs(exact_radial_stress(np.array(R)) - stress) <= 6e-4  # printed to three digits
+    verification_record("thick tube, closed form, bore", INNER * (la - 1), 7.181871, tolerance=6e-7, **known)
+    without_c01 = inner_stretch(PRESSURE, 2 * VM56.c10)
+    assert_kills(check, without_c01=(without_c01, exact_radial_stress), linear=(la, linear_radial_stress))
 
 
 @pytest.mark.parametrize("measure", COUNTS)
@@ -124,6 +131,8 @@ def test_only_the_sum_of_the_coefficients_enters(verification_record):
     bore = radial_displacement(body, solved, INNER, axes=1)
     words = "thick tube of swapped coefficients, displacement of the bore"
     verification_record(words, bore, 7.181871, tolerance=DISPLACEMENT_TOLERANCE, **known)
+    another = solve_tube("axisymmetric", MooneyRivlin2(c10=20.0, c01=80.5))
+    assert_kills(assert_bore, another_sum=("axisymmetric", *another))
 
 
 @pytest.mark.parametrize("measure", COUNTS)
