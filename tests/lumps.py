@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import ConvexHull
 
 from tactsim.analytic.sphere_points import sphere_points
+from tactsim.array import Array
 from tactsim.interfaces.solid import Solid
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMesh
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
@@ -16,7 +17,6 @@ from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.mesh.solid import outward
 
-Array = np.ndarray
 SIZE = (40e-3, 40e-3, 20e-3)
 ARTERY = Tube.example()
 LUMP = Sphere.example()

@@ -14,13 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from solids import facets_where, held, on_plane, solve_near
 
+from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.space import Measure, TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.interfaces import Material
 from tactsim.mesh.quadratic import QuadraticMesh
 
-Array = np.ndarray
 FIELD_ORDER = {2: 8, 3: 5}
 """Degree of the quadrature of loads and errors, well above that of the solver."""
 

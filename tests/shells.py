@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 from solids import body_of
 
+from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.assembly.space import Measure
@@ -12,8 +13,6 @@ from tactsim.fem.equilibrium.balance import Equilibrium
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.interfaces import Material
 from tactsim.mesh.quadratic import QuadraticMesh
-
-Array = np.ndarray
 
 
 def inflated(

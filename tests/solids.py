@@ -7,6 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 from skfem import MeshTet, MeshTri
 
+from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.space import Measure, TaylorHood
 from tactsim.fem.equilibrium.balance import Equilibrium
@@ -14,8 +15,6 @@ from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import Material
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
-
-Array = np.ndarray
 
 
 def box(

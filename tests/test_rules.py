@@ -247,9 +247,10 @@ def household_names() -> list[str]:
 
 
 def array_types() -> list[str]:
-    """Modules but ``tactsim.array`` that define a type of arrays of their own."""
+    """Modules of the package and of the tests, but ``tactsim.array``, that define a type of arrays of their own."""
     own = re.compile(r"^Array\b.*=", re.M)
-    texts = {path: path.read_text(encoding="utf-8") for path in modules() if path.name != "array.py"}
+    places = [*modules(), *sorted((ROOT / "tests").rglob("*.py"))]
+    texts = {path: path.read_text(encoding="utf-8") for path in places if path.name != "array.py"}
     return [path.relative_to(ROOT).as_posix() for path, text in texts.items() if own.search(text)]
 
 
@@ -300,6 +301,7 @@ BROKEN = {
     silent_about_errors: 'def f():\n    """F."""\n    raise ValueError',
     errors_left_unsaid: 'def f():\n    """F.\n\n    Raises\n    ------\n    CaseError\n    """\n    raise StorageError',
     other_ends_of_runs: "try:\n    a = 1\nexcept (ValueError, KeyboardInterrupt):\n    pass",
+    array_types: "Array = np.ndarray",
     household_names: "found = 1",
     printing: "print(1)",
     machine_paths: "PLACE = '" + "/home/" + "someone/case.yaml'",

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from made_grasps import LAYOUT, NOISE, SIZE, plain_forces
 
+from tactsim.array import Array
 from tactsim.contact.checks import check_law, checked_normals
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.interfaces import ContactLaw, Experiment, Inclusion, Material, RigidBody
@@ -28,7 +29,6 @@ from tactsim.results import Quantity, Result, Status
 from tactsim.results.document import document_text
 from tactsim.results.result import rows
 
-Array = np.ndarray
 POINTS = 1e-3 * np.array([[0.0, 1.0, 2.0], [-3.0, -2.0, -1.0]])
 
 

@@ -20,7 +20,6 @@ from tactsim.mesh.axisymmetric import edge_graded
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-Array = np.ndarray
 SHEAR_MODULUS, BULK_MODULUS, EDGE_LOAD = 80.1938, 40.0942e4, 6.25
 TIP, UPPER_CLAMP = np.array([48.0, 60.0]), np.array([0.0, 44.0])
 TIP_RISE = 6.932

@@ -10,6 +10,7 @@ from mutants import assert_kills
 from small_problems import CUBE, EXTENSION, PLANES, result_of
 from solids import assert_close, body_of, box, facets_where, held
 
+from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.history_variables import step_error
 from tactsim.fem.assembly.pressure import FollowerPressure
@@ -22,7 +23,6 @@ from tactsim.mechanics.paths import history_path
 from tactsim.mesh.quadratic import QuadraticMesh
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-Array = np.ndarray
 MEASURES = ["axisymmetric", "plane_strain", "solid"]
 TOLERANCE = 1e-12
 """Of displacements, pressures and forces: round-off, since Newton takes the same path; 3e-15 was seen."""

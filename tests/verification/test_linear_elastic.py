@@ -14,11 +14,11 @@ from mutants import assert_kills
 from shells import radial_displacement
 from solids import assert_close, body_of, box, facets_where, first_piola_kirchhoff, held, on_plane, solve_near
 
+from tactsim.array import Array
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.materials.linear_elastic import LinearElastic
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-Array = np.ndarray
 YOUNG = 18e3
 RATIOS = [0.0, 0.3, 0.49, 0.4999, 0.5]
 CURVATURE = 0.05

@@ -15,6 +15,7 @@ from mutants import assert_kills
 from scipy.optimize import brentq
 from solids import assert_close
 
+from tactsim.array import Array
 from tactsim.case import load_case
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.experiments.boundary_value.geometry import BlockGeometry, CylinderGeometry, Span
@@ -22,7 +23,6 @@ from tactsim.results.result import Result, Status
 from tactsim.shipped import CASES
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-Array = np.ndarray
 
 
 @cache

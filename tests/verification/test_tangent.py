@@ -13,6 +13,7 @@ import pytest
 from mutants import assert_kills
 from solids import assert_close, body_of, box, facets_where, on_plane
 
+from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.assembly.surface import SurfaceAssembly
@@ -25,7 +26,6 @@ from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.registry import kinds
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-Array = np.ndarray
 MEASURES = ["axisymmetric", "plane_strain", "solid"]
 KINDS = sorted(name for name in kinds(Material))
 RATIO_TOLERANCE = 0.02

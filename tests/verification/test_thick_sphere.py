@@ -14,13 +14,13 @@ from shells import inflated, radial_displacement, radial_stress
 from skfem import MeshTri
 from solids import assert_close, box, cauchy_stress, facets_where, held, on_plane
 
+from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.equilibrium.balance import Equilibrium
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-Array = np.ndarray
 C10, C01 = 1.0, 0.25
 MATERIAL = MooneyRivlin2(c10=C10, c01=C01)
 PRINTED = {1.10: 0.73414785, 1.20: 1.25543543}

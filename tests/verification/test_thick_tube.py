@@ -13,12 +13,12 @@ from scipy.optimize import brentq
 from shells import inflated, radial_displacement, radial_stress
 from solids import assert_close, box, cauchy_stress, facets_where, held, on_plane
 
+from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.equilibrium.balance import Equilibrium
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
 pytestmark = pytest.mark.usefixtures("one_thread")
-Array = np.ndarray
 INNER, OUTER, PRESSURE = 7.0, 18.625, 150.0
 VM56 = MooneyRivlin2(c10=80.0, c01=20.0)
 DISPLACEMENT_TOLERANCE = 1e-4
