@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Self
 
 from tactsim.errors import InvalidQuantity, shown
 from tactsim.model import FrozenModel
-from tactsim.registry import register
+from tactsim.registry import family, kind_class, kind_names, register
 
 
 class Kind(FrozenModel, ABC):
@@ -28,6 +28,13 @@ class Kind(FrozenModel, ABC):
                 raise InvalidQuantity(f"{cls.__name__}.{name}: the default {shown(one.default)} is text; needed: a number in SI")
         if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
             register(cls)
+
+    @classmethod
+    def registered_as(cls, kind: Any) -> type[Self] | None:
+        """The class of a kind if it is this class or extends it; None for any other and for a kind that is not known."""
+        point = family(cls)
+        known = kind_class(point, kind) if isinstance(kind, str) and kind in kind_names(point) else None
+        return known if known is not None and issubclass(known, cls) else None
 
     def require_own_kind(self) -> None:
         """Refuse an instance whose class has the kind of its base, as which its case would be written and read again.

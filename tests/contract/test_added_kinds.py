@@ -18,11 +18,13 @@ from tactsim.case.loading import load_case
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import AmbiguousKind, CaseError, StorageError, UnknownName
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.recorder import inclusion_kinds
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.experiments.localization.confusion import class_of
+from tactsim.experiments.localization.source import computed_grasp
 from tactsim.experiments.recording import RecordingSettings, recorder_for
 from tactsim.experiments.threshold.contact_curve import ContactCurve, SensorShape
 from tactsim.interfaces import (
@@ -364,6 +366,30 @@ def test_a_result_of_an_experiment_that_extends_another_is_the_same_when_it_is_l
         assert again == result
     finally:
         forget(Deeper)
+
+
+def test_a_result_of_an_experiment_that_extends_another_is_read_where_that_of_the_other_is(tmp_path: Path) -> None:
+    class Firmer(Grasp):
+        kind: Literal["firmer"] = "firmer"
+
+    class Deeper(Indentation):
+        kind: Literal["deeper"] = "deeper"
+
+    try:
+        grasp = SMALL_GRASP.replace("kind: grasp", "kind: firmer")
+        firmer = case(tmp_path, grasp, {"MATERIAL": "icf_stable", "LAW": "coulomb"})
+        folder = firmer.run(None).save(tmp_path / "firmer")
+        assert case(tmp_path, f"{{kind: matrix_readout, grasp: {folder}}}", {}).run(None).status is Status.CONVERGED
+        assert type(computed_grasp(str(folder))) is Firmer
+        mesh = "mesh: {finest: 0.4 mm, growth: 1, adaptive: false}"
+        text = PRESS.replace("stop: displacement", f"recess: 0.1 mm\n  {mesh}").replace(
+            "displacement: 0.2 mm", "displacement: 2 mm"
+        )
+        pressed = case(tmp_path, text.replace("kind: indentation", "kind: deeper"), {"BODY": "annulus, fillet: 0.4 mm"}).run(None)
+        assert ContactCurve.of_result(pressed, beyond=1e-4).shape == SensorShape(1.5e-3, 3e-3, 0.1e-3)
+    finally:
+        for cls in (Firmer, Deeper):
+            forget(cls)
 
 
 def test_all_points_stand_on_one_page() -> None:

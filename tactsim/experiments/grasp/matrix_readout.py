@@ -6,6 +6,7 @@ from typing import ClassVar, Literal, Self
 
 from tactsim.array import Array
 from tactsim.errors import InputError, StorageError, TactsimError
+from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.scene import GraspScene, ReadGrasp
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings, single_step
 from tactsim.interfaces import Experiment
@@ -66,7 +67,7 @@ class MatrixReadoutRun(Experiment):
 
 def _read(stored: Result, folder: str) -> tuple[GraspScene, Array, Array]:
     """The scene of a stored grasp, the times (n,) of its steps in s, and the forces (n, jaw, row, column) of its taxels in N."""
-    if stored.kind != "grasp" or not stored.steps:
+    if Grasp.registered_as(stored.kind) is None or not stored.steps:
         raise InputError(f"{folder} holds the result of {stored.kind} with {len(stored.steps)} steps; needed: a grasp with steps")
     try:
         scene, times, forces = stored.scene_as(GraspScene), over_time(stored, "time"), jaws_over_time(stored, TAXEL_FORCE)

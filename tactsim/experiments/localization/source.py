@@ -56,10 +56,11 @@ def computed_grasp(folder: str) -> Grasp:
         If it does not keep the case of a grasp that this version can read.
     """
     experiment = (read_result(folder, fields=False).provenance.get("case") or {}).get("experiment") or {}
-    if experiment.get("kind") != "grasp":
+    cls = Grasp.registered_as(experiment.get("kind"))
+    if cls is None:
         raise InputError(f"{folder} does not hold the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
     try:
-        return Grasp.model_validate_json(json.dumps(experiment), strict=True)
+        return cls.model_validate_json(json.dumps(experiment), strict=True)
     except ValidationError as error:
         raise InputError(f"the case in {folder} is not one of this version of tactsim: {first_fault(error)}") from None
 

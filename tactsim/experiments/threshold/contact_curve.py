@@ -13,6 +13,7 @@ from tactsim.analytic.annular_area import annular_area
 from tactsim.analytic.force_factor import force_factor
 from tactsim.array import Array
 from tactsim.errors import InputError, InvalidQuantity
+from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.results.result import Result, Status
 from tactsim.units import format_quantity
@@ -124,7 +125,7 @@ class ContactCurve:
             If the result is no converged indentation by an annulus with a threshold.
         """
         reached = result.quantities.get("threshold_displacement")
-        if result.kind != "indentation" or result.status is not Status.CONVERGED or reached is None:
+        if Indentation.registered_as(result.kind) is None or result.status is not Status.CONVERGED or reached is None:
             description = f"kind {result.kind}, {result.status}, {'no ' if reached is None else ''}threshold"
             raise InputError(
                 f"the result is not usable ({description}); needed: a converged indentation by an annulus to its threshold"
