@@ -16,6 +16,8 @@ from tactsim.identification.columns import of_file, read_columns, tests_by
 from tactsim.identification.dma_data import DmaData
 
 COLUMNS = {"time": "s", "load": "N", "displacement": "m"}
+SHOWN_CYCLES = 3.0
+"""Cycles of signals that figures show, of a case and of a table alike."""
 FEWEST_SAMPLES = 12
 FEWEST_PERIODS = 1.0
 SAMPLES_PER_PERIOD = 4.0

@@ -28,7 +28,9 @@ class ForceReading(ForceElectronics, ForceReader):
         return read
 
 
-def read_variables(voltage: str, force: str) -> dict[str, tuple[str, str]]:
+def read_variables(
+    voltage: str = "voltage after the low pass", force: str = "force by the calibration"
+) -> dict[str, tuple[str, str]]:
     """Unit and description by name of what is read, with noise and without."""
     variables: dict[str, tuple[str, str]] = {}
     for ending, words in (("", "with noise"), (CLEAN, "without noise: what film, electronics and calibration alone make of it")):

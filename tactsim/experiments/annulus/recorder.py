@@ -16,7 +16,7 @@ from tactsim.results.result import Result
 from tactsim.sensors.force_reading import read_variables
 
 HISTORY = {"displacement": ("m", "displacement of the annulus"), "force": ("N", "force on the annulus, without noise")}
-READ = read_variables("voltage after the low pass", "force by the calibration")
+READ = read_variables()
 
 
 class ClosedFormRecorder(Recorder):

@@ -6,12 +6,9 @@ from typing import Literal, Self
 
 import numpy as np
 
-from tactsim.identification.dma_signals import DmaSignals, ModulusEstimate, fitted_signals
+from tactsim.identification.dma_signals import SHOWN_CYCLES, DmaSignals, ModulusEstimate, fitted_signals
 from tactsim.model import FrozenModel
 from tactsim.results.scene import Scene
-
-SHOWN_CYCLES = 3.0
-"""Cycles of signals that are shown."""
 
 
 class KelvinFit(FrozenModel):

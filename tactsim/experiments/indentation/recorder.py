@@ -50,7 +50,7 @@ CURVES = {
     "tissue_rise": "largest height of the tissue in the hole above the face; NaN of a body without a hole",
 }
 """What is stored on the way to the end, under its name and `_history`."""
-READ = read_variables("voltage after the low pass", "force by the calibration")
+READ = read_variables()
 
 
 class PressedBodyRecorder(Recorder):

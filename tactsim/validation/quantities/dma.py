@@ -8,7 +8,7 @@ import numpy as np
 from pydantic import Field
 
 from tactsim.analytic.atrial import table_4_1
-from tactsim.identification.dma_signals import DmaSignals, complex_modulus
+from tactsim.identification.dma_signals import SHOWN_CYCLES, DmaSignals, complex_modulus
 from tactsim.identification.dma_synthetic_signals import DmaMachine, synthetic_signals
 from tactsim.interfaces import drawing, quantity
 from tactsim.units import Frequency, NonNegative, Positive, Time
@@ -16,8 +16,6 @@ from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 
 AREA, HEIGHT, MEAN_LOAD, AMPLITUDE = 100e-6, 5e-3, 5e-3, 2.5e-3
 """Specimen and loads, in SI, which the thesis does not print; they cancel in a modulus."""
-SHOWN_CYCLES = 3.0
-"""As many as the figure of a case shows, which this room must do without: a folder of experiments may be deleted."""
 PAUSE = 0.3
 """Between two tests as they are drawn, over the duration of the first."""
 
