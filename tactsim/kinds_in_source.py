@@ -25,10 +25,10 @@ def module_names(package: str, pattern: str) -> tuple[str, ...]:
 
 
 @cache
-def kinds_in_source(modules: tuple[str, ...], base: str) -> frozenset[str]:
-    """Kinds of the classes in the text of modules that extend, directly or not, a class of the name ``base``."""
+def kinds_in_source(modules: tuple[str, ...], base: str) -> dict[str, tuple[str, ...]]:
+    """Kind -> modules in whose text a class with it extends, directly or not, a class of the name ``base``."""
     bases: dict[str, list[str]] = {}
-    kinds: dict[str, str] = {}
+    stated: list[tuple[str, str, str]] = []
     for module in modules:
         spec = importlib.util.find_spec(module)
         source = Path(spec.origin) if spec is not None and spec.origin is not None else None
@@ -36,9 +36,13 @@ def kinds_in_source(modules: tuple[str, ...], base: str) -> frozenset[str]:
         for cls in CLASS.finditer(text):
             bases[cls["name"]] = re.findall(r"\w+", cls["bases"])
             if cls["kind"]:
-                kinds[cls["name"]] = cls["kind"]
+                stated.append((cls["kind"], cls["name"], module))
 
     def extends(name: str) -> bool:
         return name == base or any(map(extends, bases.get(name, ())))
 
-    return frozenset(kind for name, kind in kinds.items() if extends(name))
+    kinds: dict[str, tuple[str, ...]] = {}
+    for kind, name, module in stated:
+        if extends(name):
+            kinds[kind] = (*kinds.get(kind, ()), module)
+    return kinds

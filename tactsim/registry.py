@@ -134,15 +134,16 @@ def kinds(base: Any) -> dict[str, Any]:
 
 
 def kind_class(base: Any, kind: str) -> Any:
-    """The class registered as ``kind``; the other modules are only loaded if one of them names it and none bears its name.
+    """The class registered as ``kind``; of the package only the modules that bear its name or state it are loaded.
 
     Raises
     ------
+    AmbiguousKind
+        If another class has that kind, too.
     UnknownName, IncompleteKind
         With the nearest registered kind; with the methods that the class of this kind lacks.
     """
-    if kind not in _registered.get(base, {}):
-        _load_named(base, kind)
+    _load_named(base, kind)
     if kind in _registered.get(base, {}):
         return _registered[base][kind]
     known, what = kind_names(base), f"{base.__name__.lower()} kind"
@@ -158,15 +159,14 @@ def _below(base: Any) -> list[Any]:
     return [one for cls in base.__subclasses__() for one in (cls, *_below(cls))]
 
 
+@cache
 def _load_named(base: Any, kind: str) -> None:
-    """Load the modules that bear the name of a kind, or else those beside a module that does, such as the figures of a kind."""
+    """Load the modules that bear the name of a kind or whose source states it: two are found here, not when all are listed."""
     names = module_names(base.package, base.modules)
-    named = [name for name in names if name.rpartition(".")[2] == kind]
-    if not named:
-        folders = {f"{name.rpartition('.')[0]}." for name in module_names(base.package, ".*") if name.rpartition(".")[2] == kind}
-        named = [name for name in names if any(name.startswith(folder) for folder in folders - {f"{base.package}."})]
-    for name in named:
-        importlib.import_module(name)
+    stating = kinds_in_source(names, base.__name__).get(kind, ())
+    for name in names:
+        if name in stating or name.rpartition(".")[2] == kind:
+            importlib.import_module(name)
 
 
 @cache

@@ -91,7 +91,7 @@ def pretended(monkeypatch: pytest.MonkeyPatch) -> None:
 
     registry.kinds(Experiment)  # what is loaded later would be forgotten with the patch below
     monkeypatch.setitem(registry._registered, Experiment, {"pretence": pretence.Pretence})
-    monkeypatch.setattr(registry, "kinds_in_source", lambda *_: frozenset())
+    monkeypatch.setattr(registry, "kinds_in_source", lambda *_: {})
     monkeypatch.setattr(plotting, "figures_for", lambda result: {"pretence": lambda: pretence.PNG})
 
 

@@ -23,7 +23,7 @@ from tactsim import kinds_in_source, registry
 from tactsim.case.json_schema import case_json_schema
 from tactsim.cli.entry import main
 from tactsim.dataset.sampling.json_schema import sweep_json_schema
-from tactsim.errors import CaseError
+from tactsim.errors import AmbiguousKind, CaseError
 from tactsim.interfaces import Experiment, Recorder, ResultFigures
 from tactsim.registry import kinds
 from tactsim.results import read_result
@@ -150,7 +150,7 @@ WITHOUT = """
 import importlib, json, pkgutil, sys
 import tactsim
 from tactsim.cli.entry import main
-from tactsim.errors import CaseError
+from tactsim.errors import AmbiguousKind, CaseError
 from tactsim.interfaces import Experiment, Recorder, ResultFigures
 from tactsim.registry import kinds
 from tactsim.results.scene import Scene
@@ -200,6 +200,7 @@ def start_anew() -> None:
     kinds_in_source.module_names.cache_clear()
     kinds_in_source.kinds_in_source.cache_clear()
     registry._load_all.cache_clear()
+    registry._load_named.cache_clear()
 
 
 @pytest.fixture
@@ -248,6 +249,19 @@ def test_a_folder_that_is_deleted_is_known_no_more(spring: Path, tmp_path: Path,
     code, out = run_case(tmp_path)
     assert code == CaseError.exit_code
     assert "'spring'" in capsys.readouterr().err
+    assert not out.exists()
+
+
+def test_a_kind_that_a_second_module_states_is_no_kind_of_either(
+    spring: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also where only one of the two bears its name, which is all that has to be loaded for a run."""
+    text = dedent(FOLDER["spring"]).replace("class Spring(", "class Coil(")
+    (spring / "coils.py").write_text(text, encoding="utf-8")
+    start_anew()
+    code, out = run_case(tmp_path)
+    assert code == AmbiguousKind.exit_code
+    assert f"called 'spring': {SPRING}.coils.Coil and {SPRING}.spring.Spring" in capsys.readouterr().err
     assert not out.exists()
 
 
