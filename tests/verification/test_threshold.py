@@ -148,9 +148,18 @@ def test_halved_mesh_changes_little(case, verification_record):
 @pytest.mark.parametrize("thickness", [3, 10, 30])
 @pytest.mark.parametrize("case", ["annulus_icf", "annulus_b1a"])
 def test_no_threshold_is_missed_over_thickness_and_friction(case, thickness, friction):
+    """Mutant: the accepted step before the touch."""
     most = f"experiment.displacement={min(0.9 * thickness, 12)} mm"
     thick = f"experiment.specimen.thickness={thickness} mm"
-    assert threshold_pressures(case, thick, most, f"experiment.contact.friction={friction}")[0] > 0
+    result = pressed(case, thick, most, f"experiment.contact.friction={friction}")
+    assert result.status == "converged", result.reason
+    before, rise = (step.values["tissue_rise"] for step in result.steps[-2:])
+
+    def check(rise):
+        assert rise == pytest.approx(RECESS, rel=1e-4)
+
+    check(rise)
+    assert_kills(check, not_located=(before,))
 
 
 @pytest.mark.slow
