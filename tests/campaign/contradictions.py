@@ -6,6 +6,8 @@ from collections.abc import Iterator
 from math import cos, sin
 from typing import Any
 
+from tactsim.units import parse_quantity
+
 BALANCE = 1e-6
 """Largest difference of a sum of forces from its parts over the larger: round-off of a hundred thousand terms."""
 LEAST_VOLUME = 0.0
@@ -92,13 +94,13 @@ def _penetrated(values: dict[str, Any]) -> Iterator[str]:
 
 
 def _cut_short(values: dict[str, Any], reason: str, experiment: dict[str, Any]) -> Iterator[str]:
-    """An end before the displacement of a case that is made at random, which is in mm."""
+    """An end before the displacement that a case asks for."""
     if experiment.get("kind") == "grasp" and experiment["loading"]["control"] == "displacement":
         asked = experiment["loading"]["pieces"][-1]["to"]
     elif experiment.get("kind") in ("indentation", "indentation_3d") and reason == "displacement reached":
         asked = experiment["displacement"]
     else:
         return
-    metres = 1e-3 * float(asked.removesuffix(" mm"))
+    metres = parse_quantity(asked, "m")
     if abs(values["displacement"] - metres) > REACHED * metres:
         yield f"a displacement of {values['displacement']:g} m where the case asks for {metres:g} m"

@@ -19,6 +19,7 @@ from tactsim.case import load_case
 from tactsim.case.writing import yaml_text
 from tactsim.results import document, writing
 from tactsim.results.result import Result
+from tactsim.units import parse_quantity
 
 GOOD = {"status": "converged", "reason": "done", "quantities": {"force": {"value": 1.0}}}
 
@@ -142,6 +143,15 @@ def test_an_indentation_that_ends_before_its_displacement_is_seen_and_one_at_its
         "a displacement of 0.001 m where the case asks for 0.002 m"
     ]
     assert found({}, reason="threshold reached", experiment=asked) == []
+
+
+@pytest.mark.parametrize("family", ["indentation", "indentation_3d", "layered_indentation", "posed_indentation"])
+def test_the_displacement_that_a_family_asks_for_is_read_in_its_unit(family: str) -> None:
+    asked = random_case(family, 1, 0)["experiment"]
+    moved = parse_quantity(asked["displacement"], "m")
+    assert found({"displacement": moved}, reason="displacement reached", experiment=asked) == []
+    (fault,) = found({"displacement": 0.99 * moved}, reason="displacement reached", experiment=asked)
+    assert fault.endswith(f"where the case asks for {moved:g} m")
 
 
 def test_a_solver_that_writes_no_number_is_called_wrong(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
