@@ -12,7 +12,7 @@ from wrong_rows import misjudged
 
 from tactsim.case import loading
 from tactsim.shipped import CASES
-from tactsim.validation.endings import Confirmed, Contradicted
+from tactsim.validation.endings import Confirmed, Contradicted, Regression
 from tactsim.validation.execution import simulated
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
@@ -74,6 +74,14 @@ def test_a_step_towards_a_jaw_is_confirmed_where_the_force_rises_there_and_falls
         as_claimed = "above" if row.evaluate.side == "upper" else "below"
         opposite = {"above": "below", "below": "above"}[as_claimed]
         assert row.ends.limit.split()[0] == (as_claimed if isinstance(row.ends, Confirmed) else opposite), row.id
+
+
+def test_what_is_found_again_from_data_that_were_made_of_it_is_no_reproduction() -> None:
+    """The line of 3.1.2 comes back through divider and fit, the lines of 2.3.1 through creep curves: no data are printed."""
+    rows = [row for name in ("section_2_2", "section_2_3") for row in shipped_tables("thesis").tables[name].rows if row.evaluate]
+    found = [row for row in rows if row.evaluate.kind == "recovered_line" or getattr(row.evaluate, "study", "") == "creep"]
+    assert len(found) == 5
+    assert {(row.origin, type(row.ends)) for row in found} == {("own", Regression)}
 
 
 def test_all_221_numbers_have_a_row_and_all_29_errata_words() -> None:
