@@ -146,13 +146,11 @@ def kind_class(base: Any, kind: str) -> Any:
     _load_named(base, kind)
     if kind in _registered.get(base, {}):
         return _registered[base][kind]
-    known, what = kind_names(base), f"{base.__name__.lower()} kind"
-    if kind in known and kind in (loaded := kinds(base)):  # the source names classes that lack methods, too
-        return loaded[kind]
+    what = f"{base.__name__.lower()} kind"
     for cls in _below(base):
         if cls.__abstractmethods__ and cls.model_fields["kind"].default == kind:
             raise IncompleteKind(what, kind, cls)
-    raise UnknownName(what, kind, known)
+    raise UnknownName(what, kind, kind_names(base))
 
 
 def _below(base: Any) -> list[Any]:
