@@ -9,7 +9,8 @@
     |   |-- InvalidQuantity       a number out of its range, or without its unit
     |   |-- UnknownName           a name that is not registered
     |   |-- AmbiguousKind         a name that is registered twice
-    |   `-- IncompleteKind        a kind whose class lacks methods
+    |   |-- IncompleteKind        a kind whose class lacks methods
+    |   `-- IncompleteInstallation   a name whose module needs one that is not there
     |-- Unfinished            3   a computation ended before its end
     |   |-- ConvergenceError      the solver gave up; carries its history
     |   |-- Collapsed             an element is nearly inside out
@@ -107,6 +108,10 @@ class IncompleteKind(InputError, ValueError):
 
     def __init__(self, what: str, kind: str, cls: Any):
         super().__init__(f"{what} {shown(kind)}: its class {cls.__qualname__} lacks {', '.join(sorted(cls.__abstractmethods__))}")
+
+
+class IncompleteInstallation(InputError):
+    """The module that states a name needs one of this program that is not there, such as a family of experiments removed."""
 
 
 class Unfinished(TactsimError):

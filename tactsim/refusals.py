@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Sequence
-from functools import cache
 from typing import Any, get_args
 
 from pydantic import BaseModel, ValidationError
 from pydantic_core.core_schema import ErrorType
 
 from tactsim.errors import Refused, shown, suggestion
-from tactsim.field_docstrings import docstrings_alone
 from tactsim.outside.text import one_line
+from tactsim.schema_of_model import Path, keys_of, members_of, resolved, schema_at, schema_of, tag_of, tags_of, value_at
 from tactsim.units import DECIMAL_POINT, format_quantity
-
-Path = tuple[str | int, ...]
-"""Keys and numbers that lead to a value of a case."""
 
 _TYPES = {
     "string": "a text",
@@ -38,7 +34,7 @@ OF_KEY = "[key]"
 
 def refusals_of(error: ValidationError, value: Any, model: type[BaseModel]) -> dict[Path, str]:
     """Key path -> message for every place of ``value``, plain data, that the model refused."""
-    schema = _schema_of(model)
+    schema = schema_of(model)
     messages: dict[Path, list[str]] = {}
     for detail in details(error):
         path = path_in_file(detail["loc"], value, str(detail["type"]))
@@ -56,13 +52,6 @@ def first_fault(error: ValidationError) -> str:
     first = error.errors(include_url=False, include_context=False, include_input=False)[0]
     place = one_line(".".join(map(str, first["loc"])), LONGEST_PLACE)
     return f"{place}: {one_line(first['msg'])}" if place else one_line(first["msg"])
-
-
-@cache
-def _schema_of(model: type[BaseModel]) -> dict[str, Any]:
-    """The JSON Schema of a model, which takes long to make; it is only read."""
-    with docstrings_alone():
-        return model.model_json_schema(by_alias=True)
 
 
 def details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Iterator[dict[str, Any]]:
@@ -106,12 +95,12 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
     """The key path to blame and the message for one refusal."""
     error_type, context = str(detail["type"]), detail.get("ctx", {})
     if detail["loc"][-1:] == (OF_KEY,):
-        names = _schema_at(schema, root, path[:-1]).get("propertyNames", {})
+        names = schema_at(schema, root, path[:-1]).get("propertyNames", {})
         return path, f"the key {as_written(path[-1])} is not allowed; expected {names.get('description', detail['msg'])}"
     value = value_at(root, path)
-    fragment = _schema_at(schema, root, path)
+    fragment = schema_at(schema, root, path)
     if error_type == "extra_forbidden":
-        allowed = _keys(_schema_at(schema, root, path[:-1]), schema)
+        allowed = keys_of(schema_at(schema, root, path[:-1]), schema)
         comma = f"; {DECIMAL_POINT}" if str(path[-1]).isdecimal() else ""
         meant = _deeper(path, root, schema, allowed) or suggestion(str(path[-1]), allowed)
         return path, f"unknown key{meant}; allowed: {', '.join(allowed) or 'none'}{comma}"
@@ -119,7 +108,7 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
         return path, f"missing; expected {_expectation(fragment, schema)}"
     if error_type == "union_tag_not_found":
         place = _tag_path(context, path)
-        return place, f"missing; choices: {', '.join(_tags(fragment, schema, str(place[-1])))}"
+        return place, f"missing; choices: {', '.join(tags_of(fragment, schema, str(place[-1])))}"
     if error_type == "union_tag_invalid":
         tag, choices = str(context["tag"]), re.findall(r"'([^']*)'", context["expected_tags"])
         place = _tag_path(context, path)
@@ -139,7 +128,7 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
 def _deeper(path: Path, root: Any, schema: dict[str, Any], allowed: Sequence[str]) -> str:
     """What to say of an unknown key that is one of a mapping beside it, as ``recess`` is of ``experiment``."""
     *above, key = path
-    beside = [name for name in allowed if key in _keys(_schema_at(schema, root, (*above, name)), schema)]
+    beside = [name for name in allowed if key in keys_of(schema_at(schema, root, (*above, name)), schema)]
     return f" (did you mean {'.'.join(map(str, (*above, beside[0], key)))!r}?)" if beside else ""
 
 
@@ -193,17 +182,17 @@ def _wanted(detail: dict[str, Any], fragment: dict[str, Any], schema: dict[str, 
 
 def _expectation(fragment: dict[str, Any], schema: dict[str, Any]) -> str:
     """What a fragment of the schema accepts, in words."""
-    fragment = _resolved(fragment, schema)
+    fragment = resolved(fragment, schema)
     if "const" in fragment:
         return as_written(fragment["const"])
     if "enum" in fragment:
         return "one of " + ", ".join(map(shown, fragment["enum"]))
     if "unit" in fragment:
         return f"a quantity with its unit, such as {fragment['examples'][0]!r}"
-    members = list(_members(fragment, schema))
-    tags = _tags(fragment, schema)
+    members = list(members_of(fragment, schema))
+    tags = tags_of(fragment, schema)
     if len(members) > 1 or tags:
-        words = [_expectation(member, schema) for member in members if not _tag(member)]
+        words = [_expectation(member, schema) for member in members if not tag_of(member)]
         return " or ".join(dict.fromkeys([*words, *([f"a mapping with a kind of {', '.join(tags)}"] if tags else [])]))
     if fragment.get("type") == "object" and "properties" in fragment:
         return f"a mapping with {', '.join(fragment['properties'])}"
@@ -212,85 +201,3 @@ def _expectation(fragment: dict[str, Any], schema: dict[str, Any]) -> str:
 
 def _tag_path(context: dict[str, Any], path: Path) -> Path:
     return (*path, str(context["discriminator"]).strip("'"))
-
-
-def value_at(value: Any, path: Path) -> Any:
-    """What plain data hold at a key path, None where they hold nothing."""
-    for key in path:
-        try:
-            value = value[key]
-        except (LookupError, TypeError):
-            return None
-    return value
-
-
-def _resolved(fragment: dict[str, Any], schema: dict[str, Any]) -> dict[str, Any]:
-    while "$ref" in fragment:
-        fragment = schema["$defs"][fragment["$ref"].rpartition("/")[2]]
-    return fragment
-
-
-def _members(fragment: dict[str, Any], schema: dict[str, Any]) -> Iterator[dict[str, Any]]:
-    """The fragment itself, or the members of a union at any depth."""
-    fragment = _resolved(fragment, schema)
-    inner = [*fragment.get("anyOf", ()), *fragment.get("oneOf", ()), *fragment.get("allOf", ())]
-    if not inner:
-        yield fragment
-    for member in inner:
-        yield from _members(member, schema)
-
-
-def _tags(fragment: dict[str, Any], schema: dict[str, Any], key: str = "kind") -> list[str]:
-    return sorted({tag for member in _members(fragment, schema) if (tag := _tag(member, key))})
-
-
-def _tag(member: dict[str, Any], key: str = "kind") -> str:
-    """What tells a member of a union from the others, the constant of its ``kind`` or of another key; empty if it has none."""
-    return str(member.get("properties", {}).get(key, {}).get("const", ""))
-
-
-def _keys(fragment: dict[str, Any], schema: dict[str, Any]) -> list[str]:
-    return list(dict.fromkeys(key for member in _members(fragment, schema) for key in member.get("properties", {})))
-
-
-def unit_at(model: type[BaseModel], value: Any, path: Path) -> str:
-    """The SI unit of the quantity at a key path of ``value``, empty where there is none."""
-    fragment = _schema_at(_schema_of(model), value, path)
-    return next((str(member["unit"]) for member in _members(fragment, _schema_of(model)) if "unit" in member), "")
-
-
-def _schema_at(schema: dict[str, Any], root: Any, path: Path) -> dict[str, Any]:
-    """The part of the schema for a key path, in every union of the member whose ``kind`` or ``control`` the file names."""
-    fragment = _narrowed(schema, schema, root)
-    for position, key in enumerate(path):
-        fragment = _entry(fragment, key)
-        fragment = _narrowed(fragment, schema, value_at(root, path[: position + 1]))
-    return fragment
-
-
-def _entry(fragment: dict[str, Any], key: str | int) -> dict[str, Any]:
-    for part in fragment.get("anyOf", [fragment]):
-        if isinstance(key, int):
-            prefix = part.get("prefixItems", [])
-            entry = prefix[key] if key < len(prefix) else part.get("items")
-        else:
-            entry = part.get("properties", {}).get(key) or part.get("additionalProperties")
-        if isinstance(entry, dict):
-            return entry
-    return {}
-
-
-def _narrowed(fragment: dict[str, Any], schema: dict[str, Any], value: Any) -> dict[str, Any]:
-    members = list(_members(fragment, schema))
-    if isinstance(value, dict) and len(members) > 1:
-        kind = value.get("kind")
-        agreeing = [m for m in members if _agrees(m, value)]
-        fitting = [m for m in agreeing if (_tag(m) == kind if kind else set(m.get("required", ["kind"])) <= value.keys())]
-        members = fitting if len(fitting) == 1 else members
-    return members[0] if len(members) == 1 else {**_resolved(fragment, schema), "anyOf": members}
-
-
-def _agrees(member: dict[str, Any], value: dict[str, Any]) -> bool:
-    """Whether a mapping has what a member of a union has as constants, such as ``control``, where it has these keys."""
-    constants = {key: entry["const"] for key, entry in member.get("properties", {}).items() if "const" in entry}
-    return all(value[key] == constant for key, constant in constants.items() if key in value)

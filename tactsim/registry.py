@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -13,7 +12,8 @@ from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler, ValidationInfo
 from pydantic_core import CoreSchema, PydanticCustomError, PydanticKnownError, core_schema
 
 from tactsim.errors import AmbiguousKind, IncompleteKind, UnknownName
-from tactsim.kinds_in_source import kinds_in_source, module_names
+from tactsim.kinds_in_source import kinds_in_source, load_all, module_names
+from tactsim.marked_functions import forget_function
 
 _registered: dict[type, dict[str, Any]] = {}
 """Extension point -> ``kind`` -> class; filled by `register`, which every concrete subclass calls as it is defined."""
@@ -38,66 +38,10 @@ def register(cls: Any) -> None:
     known[kind] = cls
 
 
-@dataclass(frozen=True)
-class MarkedFunction:
-    """A function that the tables of the thesis call by its name, with arguments that are read from its signature."""
-
-    family: str
-    """``quantity`` for the number of a row, ``drawing`` for the data of a figure."""
-    function: Callable[..., Any]
-    unit: str | Callable[..., str] = "1"
-    """SI unit of the number, or a function that returns it from those of the arguments that it names."""
-    check: Callable[..., None] | None = None
-    """Raises a ValueError if the arguments that it names do not go together; called when a table is read."""
-
-    @property
-    def name(self) -> str:
-        """What a table writes as ``kind``."""
-        return self.function.__name__
-
-    @property
-    def module(self) -> str:
-        """Where it is defined."""
-        return self.function.__module__
-
-
-_marked: dict[tuple[str, str, str], MarkedFunction] = {}
-"""Every marked function by family, name and module; one defined again in its module takes the place of the earlier one."""
-
-
-def mark(marked: MarkedFunction) -> None:
-    """Make a function known to the tables."""
-    _marked[marked.family, marked.name, marked.module] = marked
-
-
-def marked_functions(package: str, family: str) -> dict[str, MarkedFunction]:
-    """Name -> function of a family (``quantity``, ``drawing``), sorted by name.
-
-    Those of every module of ``package`` and its folders, and those that any other module or a notebook has marked so far.
-
-    Raises
-    ------
-    AmbiguousKind
-        If functions of two modules have the same name.
-    """
-    _load_all(package, ".*")
-    functions: dict[str, MarkedFunction] = {}
-    for key in sorted(key for key in _marked if key[0] == family):
-        _, name, module = key
-        if name in functions:
-            raise AmbiguousKind(
-                f"two modules mark a {family} {name!r}: {functions[name].module} and {module}; rename one of them"
-            )
-        functions[name] = _marked[key]
-    return functions
-
-
 def forget(thing: Any) -> None:
     """Remove a registered class or a marked function, such as one that a test or a notebook defined."""
     if not isinstance(thing, type):
-        for key in [key for key, marked in _marked.items() if marked.function is thing]:
-            del _marked[key]
-        return
+        return forget_function(thing)
     cls: Any = thing
     known, kind = _registered.get(family(cls), {}), cls.model_fields["kind"].default
     if kind in known and known[kind] is cls:
@@ -129,7 +73,7 @@ def kind_names(base: Any) -> list[str]:
 
 def kinds(base: Any) -> dict[str, Any]:
     """``kind`` -> class of everything registered for an extension point, sorted by kind."""
-    _load_all(base.package, base.modules)
+    load_all(base.package, base.modules)
     return dict(sorted(_registered.get(base, {}).items()))
 
 
@@ -165,12 +109,6 @@ def _load_named(base: Any, kind: str) -> None:
     for name in names:
         if name in stating or name.rpartition(".")[2] == kind:
             importlib.import_module(name)
-
-
-@cache
-def _load_all(package: str, pattern: str) -> None:
-    for name in module_names(package, pattern):
-        importlib.import_module(name)
 
 
 class Registered:
@@ -216,9 +154,13 @@ class Registered:
             return cls.model_validate_json(json.dumps(value), strict=True, context=info.context)
         return cls.model_validate(value, context=info.context)
 
+    def class_of(self, kind: str) -> Any:
+        """The class of a kind, as `kind_class`; a subclass may look elsewhere."""
+        return kind_class(self.base, kind)
+
     def _class(self, kind: Any) -> Any:
         try:
-            cls = kind_class(self.base, kind) if isinstance(kind, str) else None
+            cls = self.class_of(kind) if isinstance(kind, str) else None
         except UnknownName:
             cls = None
         if cls is not None and not self.fits(cls) and self.unfit is not None:

@@ -6,7 +6,8 @@ from markdown_parts import first_paragraph, page, table
 
 from tactsim import interfaces
 from tactsim.kind import Kind
-from tactsim.registry import kinds, marked_functions
+from tactsim.marked_functions import marked_functions
+from tactsim.registry import kinds
 
 ORDER = (
     "Material",

@@ -24,8 +24,9 @@ from tactsim.interfaces import Experiment
 from tactsim.model import plain
 from tactsim.outside.files import LIMITS, TooLarge, Unreadable, named_path, opened
 from tactsim.outside.text import one_line
-from tactsim.refusals import as_written, value_at
+from tactsim.refusals import as_written
 from tactsim.registry import kind_names
+from tactsim.schema_of_model import value_at
 from tactsim.shipped import CASES, case_path, shipped_name
 
 LONGEST_MESSAGE = 2000

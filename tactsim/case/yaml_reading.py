@@ -23,7 +23,7 @@ from ruamel.yaml.events import (
 )
 
 from tactsim.errors import CaseError, shown
-from tactsim.refusals import Path
+from tactsim.schema_of_model import Path
 
 _STANDARD_TAG = "tag:yaml.org,2002:"
 LARGEST_DEPTH = 40

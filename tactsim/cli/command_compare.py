@@ -133,7 +133,7 @@ def _print_warnings(comparison: Comparison) -> None:
 def _unit_of(experiment: Mapping[str, Any], path: tuple[str | int, ...]) -> str:
     """SI unit of a key of an experiment by the schema of its kind; empty for a kind that this tactsim does not have."""
     from tactsim.case.model import experiment_class
-    from tactsim.refusals import unit_at
+    from tactsim.schema_of_model import unit_at
 
     try:
         return unit_at(experiment_class(str(experiment.get("kind"))), experiment, path)

@@ -11,7 +11,7 @@ from tactsim.cli import console
 from tactsim.outside.text import aligned, one_line
 
 if TYPE_CHECKING:
-    from tactsim.refusals import Path as KeyPath
+    from tactsim.schema_of_model import Path as KeyPath
 
 NAME = "list"
 SUMMARY = "list shipped cases, sweeps, materials, kinds, estimators and tables"

@@ -143,7 +143,7 @@ def _show_sweep(path: Path, save: Path | None, form: str | None, named: Path) ->
     """How many samples a sweep would compute and what varies in them, and a picture of the first at rest."""
     from tactsim.dataset.sampling.layout import first_case
     from tactsim.dataset.sampling.sweep import load_sweep
-    from tactsim.refusals import value_at
+    from tactsim.schema_of_model import value_at
 
     sweep = load_sweep(path)
     case, document = first_case(sweep), sweep.document.value

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Any, TypeVar
 
-from tactsim.registry import MarkedFunction, mark
+from tactsim.marked_functions import MarkedFunction, mark
 from tactsim.units import check_unit
 
 Function = TypeVar("Function", bound=Callable[..., Any])

@@ -28,6 +28,11 @@ class Scene(Kind):
     package: ClassVar[str] = "tactsim.experiments"
     modules: ClassVar[str] = r"\w+\.scene"
 
+    @property
+    def disc_share(self) -> float:
+        """Area that a pressure is taken over, over that of the full disc of its outer radius: 1 for a body without a hole."""
+        return 1.0
+
     def coordinates(self, quantity: str) -> dict[str, Coordinate]:
         """What lies along the axes of a quantity of the result, by name, where its quantities do not hold it."""
         return {}

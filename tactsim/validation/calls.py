@@ -4,15 +4,18 @@ from __future__ import annotations
 
 import inspect
 import re
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
+from contextlib import suppress
 from functools import cache
-from typing import Annotated, Any, ClassVar, Literal, Self, Union, get_type_hints
+from typing import Any, ClassVar, Literal, Self, get_type_hints
 
-from pydantic import Field, create_model, model_validator
+from pydantic import Field, ValidationInfo, create_model, model_validator
+from pydantic_core import PydanticCustomError
 
-from tactsim.errors import InputError
+from tactsim.errors import IncompleteInstallation, InputError
+from tactsim.marked_functions import MarkedFunction, marked_function, marked_names
 from tactsim.model import FrozenModel
-from tactsim.registry import MarkedFunction, marked_functions
+from tactsim.registry import Registered
 from tactsim.validation.inputs import Inputs
 
 PACKAGE = "tactsim.validation.quantities"
@@ -57,26 +60,42 @@ class Call(FrozenModel):
         )
 
 
-def callable_now(family: str) -> tuple[MarkedFunction, ...]:
-    """The functions of a family, ``quantity`` or ``drawing``, that a table may call.
+class AnyCall(Registered):
+    """Annotation of a field that takes a call of every marked function of a family, ``quantity`` or ``drawing``."""
 
-    Raises
-    ------
-    InputError
-        If functions of two modules have the same name.
-    """
-    return tuple(marked_functions(PACKAGE, family).values())
+    def __init__(self, family: str):
+        super().__init__(Call)
+        self.family = family
 
+    def read(self, value: Any, info: ValidationInfo) -> Any:
+        """As `Registered.read`; a call passes as it is."""
+        return value if isinstance(value, Call) else super().read(value, info)
 
-def any_call(functions: Iterable[MarkedFunction]) -> Any:
-    """The type of the calls of these functions, distinguished by ``kind``.
+    def kinds(self) -> dict[str, Any]:
+        """Name -> calls of the functions whose modules can be loaded."""
+        calls = {}
+        for name in marked_names(PACKAGE, self.family):
+            with suppress(IncompleteInstallation):
+                calls[name] = self._called(name)
+        return calls
 
-    Raises
-    ------
-    InputError
-        If a signature does not say what a table may write.
-    """
-    return _union_of({marked.name: call_class(marked) for marked in functions})
+    def class_of(self, kind: str) -> type[Call]:
+        """The calls of the function of this name; of the package, only the modules that state it are loaded.
+
+        Raises
+        ------
+        UnknownName, PydanticCustomError
+            If there is none; if the module that states it needs one that is not there.
+        AmbiguousKind, InputError
+            If two modules mark it; if its signature does not say what a table may write.
+        """
+        try:
+            return self._called(kind)
+        except IncompleteInstallation as error:
+            raise PydanticCustomError("incomplete_installation", "{message}", {"message": str(error)}) from None
+
+    def _called(self, name: str) -> type[Call]:
+        return call_class(marked_function(PACKAGE, self.family, name))
 
 
 @cache
@@ -112,9 +131,3 @@ def descriptions(function: Callable[..., Any]) -> dict[str, str]:
     section = re.search(r"^Parameters\n-+\n((?:.+\n?)+)", inspect.getdoc(function) or "", re.MULTILINE)
     entries = re.findall(r"^(\w+(?:, \w+)*) : (.+(?:\n +.+)*)", section[1] if section else "", re.MULTILINE)
     return {name: " ".join(text.split()) for names, text in entries for name in names.split(", ")}
-
-
-def _union_of(known: dict[str, Any]) -> Any:
-    """Pydantic type of these classes, told apart by ``kind``."""
-    choices = tuple(known[kind] for kind in sorted(known))
-    return choices[0] if len(choices) == 1 else Annotated[Union[choices], Field(discriminator="kind")]  # noqa: UP007

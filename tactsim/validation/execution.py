@@ -14,11 +14,10 @@ from time import monotonic
 from tactsim.case import load_case
 from tactsim.code_identity import code_identity
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
-from tactsim.experiments.indentation.scene import PressedBodyScene
 from tactsim.outside.files import opened
 from tactsim.outside.processes import BROKEN, serve
 from tactsim.outside.worker_pool import Answer, WorkerPool
-from tactsim.results import Result
+from tactsim.results.scene import Scene
 from tactsim.storage.files import replace_file
 from tactsim.user_cache import user_cache
 from tactsim.validation.solver_identity import solver_identity
@@ -161,17 +160,9 @@ def simulated(task: Task) -> RunOutcome:
         reason=result.reason,
         quantities={key: float(value) for key, value in scalars.items() if math.isfinite(value)},
         history={key: tuple(step.values[key] for step in result.steps) for key in result.units if _recorded(result.steps, key)},
-        disc_share=_disc_share(result),
+        disc_share=result.scene.disc_share if isinstance(result.scene, Scene) else 1.0,
         seconds=result.timing["total"],
     )
-
-
-def _disc_share(result: Result) -> float:
-    """Part of the disc that an annulus covers, 1 for a body without a hole."""
-    if not isinstance(result.scene, PressedBodyScene):
-        return 1.0
-    shape = result.scene.body.contact_shape
-    return 1 - (shape.hole / shape.reach) ** 2
 
 
 def _recorded(steps: Sequence, key: str) -> bool:

@@ -15,7 +15,7 @@ from tactsim.case.loading import case_error, place_in, read_case_text
 from tactsim.case.yaml_reading import YamlProblems, read_yaml
 from tactsim.errors import CaseError, UnknownName
 from tactsim.validation.comparison import figures_of
-from tactsim.validation.table import Manifest, Table, table_class
+from tactsim.validation.table import Manifest, Table
 
 MANIFEST = "manifest.yaml"
 Model = TypeVar("Model", bound=BaseModel)
@@ -76,7 +76,7 @@ def load_tables(folder: Path, names: Sequence[str] = ()) -> LoadedTables:
     CaseError
         For a file that is no table, with one line for every fault.
     InputError
-        If two numbers or two figures have the same name, or a signature does not say what a table may write.
+        If two numbers or two figures that a table calls have the same name, or a signature does not say what it may write.
     StorageError
         If the manifest cannot be read.
     """
@@ -86,8 +86,7 @@ def load_tables(folder: Path, names: Sequence[str] = ()) -> LoadedTables:
         if name not in known:
             raise UnknownName("table", name, known)
     chosen = list(dict.fromkeys(names)) or known
-    model = table_class()
-    tables = {name: read_model(files[name], model) for name in chosen if name in files}
+    tables = {name: read_model(files[name], Table) for name in chosen if name in files}
     faults = [fault for name in chosen for fault in _faults(name, tables.get(name), manifest)]
     faults += _number_faults(tables, manifest, whole=not names)
     return LoadedTables(folder, tables, manifest, tuple(faults))

@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 from fnmatch import fnmatchcase
-from functools import lru_cache
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, SerializeAsAny, create_model, model_validator
+from pydantic import Field, model_validator
 
 from tactsim.model import FrozenModel
-from tactsim.registry import MarkedFunction
 from tactsim.units import parse_quantity
-from tactsim.validation.calls import Call, any_call, callable_now
+from tactsim.validation.calls import AnyCall, Call
 from tactsim.validation.endings import Bound, Ending, NotTestable, Origin, Regression, RegressionBound, Reproduced, in_si
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.study import Study
@@ -32,7 +30,7 @@ class Row(FrozenModel):
     """The number with its unit, dimensionless without; a claim that is no number goes without."""
     origin: Origin = Field(alias="from")
     """Where the expected number or the claim comes from."""
-    evaluate: SerializeAsAny[Call] | None = None
+    evaluate: Annotated[Call, AnyCall("quantity")] | None = None
     """How it is computed here; what is not testable goes without."""
     ends: Ending
     """How the row is known to end."""
@@ -92,7 +90,7 @@ class Picture(FrozenModel):
     """What the source says of it, or what it adds to the rows; a sentence without its full stop."""
     rows: tuple[str, ...] = Field(min_length=1)
     """Rows that it belongs to, below the last of which it stands; ``*`` stands for any part of a name."""
-    draw: SerializeAsAny[Call]
+    draw: Annotated[Call, AnyCall("drawing")]
     """How it is drawn."""
 
     @property
@@ -165,23 +163,3 @@ class Manifest(FrozenModel):
     def tables(self) -> dict[str, tuple[str, int]]:
         """Table -> its chapter and number of rows."""
         return {name: (chapter, rows) for chapter, tables in self.chapters.items() for name, rows in tables.items()}
-
-
-def table_class() -> type[Table]:
-    """The table whose rows and figures call any of the functions that are marked now.
-
-    Raises
-    ------
-    InputError
-        If two functions have the same name, or a signature does not say what a table may write.
-    """
-    return _table_of(callable_now("quantity"), callable_now("drawing"))
-
-
-@lru_cache(maxsize=2)
-def _table_of(quantities: tuple[MarkedFunction, ...], drawings: tuple[MarkedFunction, ...]) -> type[Table]:
-    row = create_model("Row", __base__=Row, evaluate=(any_call(quantities) | None, None))
-    rows: Any = (tuple[row, ...], Field(min_length=1))
-    picture = create_model("Picture", __base__=Picture, draw=(any_call(drawings), ...))
-    figures: Any = (dict[str, picture], {})
-    return create_model("Table", __base__=Table, rows=rows, figures=figures)

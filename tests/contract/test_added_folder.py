@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -176,6 +177,7 @@ sweep: {samples: 2}
 """
 ALONE = """
 import json, sys
+from contextlib import redirect_stderr
 import tactsim
 from tactsim.cli.entry import main
 
@@ -183,10 +185,13 @@ runs = [["run", "case.yaml", "--out", out, "--quiet"] for out in ("first", "seco
 shown = [["compare", "first", "second"], ["list", "kinds"], ["schema", "--out", "case.schema.json"]]
 data = [["sweep", "sweep.yaml", "--out", "annuli.zarr", "--workers", "1", "--quiet"], ["data", "info", "annuli.zarr"]]
 drawn = [["show", place, "--save", place.partition(".")[0] + ".png"] for place in ("first", "annuli.zarr")]
-codes = {" ".join(command): main(command) for command in (*runs, *shown, *data, *drawn)}
-print(json.dumps({"package": tactsim.__path__[0], "codes": codes}))
+tables = [["validate", "equation_4_7_1", "--out", "report"]]
+codes = {" ".join(command): main(command) for command in (*runs, *shown, *data, *drawn, *tables)}
+with open("refusal.txt", "w", encoding="utf-8") as refusal, redirect_stderr(refusal):
+    refused = main(["validate", "section_3_1_2", "--out", "none"])
+print(json.dumps({"package": tactsim.__path__[0], "codes": codes, "refused": refused}))
 """
-"""What a user does with a result and with a data set, of any kind of experiment."""
+"""What a user does with a result, with a data set and with a table, of any kind of experiment."""
 
 
 def start_anew() -> None:
@@ -199,7 +204,7 @@ def start_anew() -> None:
     vars(tactsim.experiments).pop("spring", None)
     kinds_in_source.module_names.cache_clear()
     kinds_in_source.kinds_in_source.cache_clear()
-    registry._load_all.cache_clear()
+    kinds_in_source.load_all.cache_clear()
     registry._load_named.cache_clear()
 
 
@@ -335,8 +340,16 @@ def test_a_family_that_builds_on_none_is_all_that_its_cases_and_data_sets_need(t
             shutil.rmtree(copy / "experiments" / name)
     for name, text in (("case", QUICK_CASE), ("sweep", SWEPT)):
         (tmp_path / f"{name}.yaml").write_text(text, encoding="utf-8")
+    shutil.copytree(PACKAGE.parent / "cases", tmp_path / "cases")
     answer = answer_of(tmp_path, ALONE)
     assert answer["package"] == str(copy)
+    assert answer["refused"] == 2
+    refusal = (
+        r"section_3_1_2\.yaml:82: rows\.9\.evaluate: quantity \w+ of [\w.]+\.threshold needs tactsim\.experiments\.threshold"
+    )
+    assert re.search(refusal, (tmp_path / "refusal.txt").read_text(encoding="utf-8"))
     assert {command: code for command, code in answer["codes"].items() if code} == {}
+    (counts, *_) = json.loads((tmp_path / "report" / "validation.json").read_text(encoding="utf-8"))["groups"]["thesis"]["counts"]
+    assert (counts["table"], counts["reproduced"], counts["left"]) == ("equation_4_7_1", 2, 0)
     for name in ("first", "annuli"):
         assert (tmp_path / f"{name}.png").read_bytes()[:4] == b"\x89PNG"

@@ -417,3 +417,14 @@ def test_two_classes_of_one_kind_are_an_error_that_names_both(base: Any, added: 
     added(base, "one_place")
     with pytest.raises(AmbiguousKind, match=r"one_place\.Added and another_place\.Added"):
         added(base, "another_place")
+
+
+def test_a_kind_that_is_defined_after_a_refusal_is_explained_too(added: Any, tmp_path: Path) -> None:
+    """The choices of an earlier refusal were taken, and a wrong key was asked whether it meant itself."""
+    wrong = {"{kind: neo_hookean, c10: 3 kPa}": "{kind: added, c11: 3 kPa}", "BODY": "plane"}
+    with pytest.raises(CaseError, match="unknown material kind 'added'"):
+        case(tmp_path, TIMED, wrong)
+    added(Material)
+    allowed = "kind, bulk_modulus, relaxation, c10"
+    with pytest.raises(CaseError, match=rf"c11: unknown key \(did you mean 'c10'\?\); allowed: {allowed}$"):
+        case(tmp_path, TIMED, wrong)

@@ -18,7 +18,8 @@ from thesis_tables import GROUPS, MANIFEST, TABLE, shipped_tables, write_tables
 from tactsim.cli import main
 from tactsim.errors import CaseError, InputError, InvalidQuantity
 from tactsim.interfaces import drawing, quantity
-from tactsim.registry import MarkedFunction, _marked, forget, marked_functions
+from tactsim.marked_functions import MarkedFunction, _marked, marked_functions
+from tactsim.registry import forget
 from tactsim.units import is_unit, parse_quantity
 from tactsim.validation import compare, load_tables
 from tactsim.validation.calls import INPUTS, PACKAGE, call_class, descriptions

@@ -24,8 +24,8 @@ from tactsim.model import plain
 from tactsim.outside.files import named_path
 from tactsim.outside.text import one_line
 from tactsim.progress import count_bar
-from tactsim.refusals import unit_at
 from tactsim.registry import kinds_outside
+from tactsim.schema_of_model import unit_at
 from tactsim.storage.own_files import ForeignFile, OwnFiles
 
 if TYPE_CHECKING:

@@ -14,7 +14,8 @@ from tactsim.case.yaml_reading import Path
 from tactsim.dataset.sampling.sweep import Place, Sweep, filled
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError, UnknownName
 from tactsim.interfaces.distributions import Listed
-from tactsim.refusals import as_written, details, path_in_file, refusals_of, value_at
+from tactsim.refusals import as_written, details, path_in_file, refusals_of
+from tactsim.schema_of_model import value_at
 
 ENDS = (0.0, 1.0 - 2.0**-53)
 """Shares of the probability at which a distribution without options is tried."""

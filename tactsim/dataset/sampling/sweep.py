@@ -23,7 +23,8 @@ from tactsim.dataset.sampling.settings import LICENCE, OF_THE_CARD, SCHEMA, Swee
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.errors import CaseError, InputError, suggestion
 from tactsim.interfaces.distributions import READERS, Distribution, Listed, distribution
-from tactsim.refusals import as_written, value_at
+from tactsim.refusals import as_written
+from tactsim.schema_of_model import value_at
 
 SECTION = "sweep"
 

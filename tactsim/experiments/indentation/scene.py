@@ -23,6 +23,12 @@ class PressedBodyScene(Scene):
     solver: SolverReport
     """What the solution took."""
 
+    @property
+    def disc_share(self) -> float:
+        """Area of the body's face over that of the full disc."""
+        shape = self.body.contact_shape
+        return 1 - (shape.hole / shape.reach) ** 2
+
 
 class ContactProfile(FrozenModel):
     """The contact pressure on every edge of an element at the tissue's surface, from the axis outwards."""

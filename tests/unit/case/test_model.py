@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from pretence import CASE_TEXT, Pretence, Soft, Specimen
 
-from tactsim import field_docstrings, refusals
+from tactsim import field_docstrings, schema_of_model
 from tactsim.case import SCHEMA, Case, load_case
 from tactsim.errors import CaseError
 from tactsim.field_docstrings import docstrings_alone
@@ -114,7 +114,7 @@ def test_a_refusal_reads_no_docstrings_of_fields(case_file: Path, monkeypatch: p
     monkeypatch.setattr(
         field_docstrings, "_parameters_section", lambda model, fields: pytest.fail(f"read those of {model.__name__}")
     )
-    refusals._schema_of.cache_clear()
+    schema_of_model._schema_with.cache_clear()
     case_file.write_text(CASE_TEXT.replace("radius", "radios"), encoding="utf-8")
     with pytest.raises(CaseError, match="did you mean 'radius'"):
         load_case(case_file)

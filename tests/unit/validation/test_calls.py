@@ -9,7 +9,7 @@ import pytest
 from pydantic import ValidationError
 
 from tactsim.errors import CaseError, InputError, InvalidQuantity
-from tactsim.registry import MarkedFunction
+from tactsim.marked_functions import MarkedFunction
 from tactsim.units import Length, Positive
 from tactsim.validation.calls import call_class, descriptions
 from tactsim.validation.inputs import Inputs

@@ -31,9 +31,9 @@ from tactsim.plotting.canvas import (
     scale_of,
 )
 from tactsim.plotting.plane_cut import FACES, QUARTERS
-from tactsim.refusals import unit_at
 from tactsim.results import FieldFrame, Result
 from tactsim.results.fields import DISPLACEMENT, VON_MISES
+from tactsim.schema_of_model import unit_at
 from tactsim.units import format_quantity
 
 TITLE = "Boundary value problem"
