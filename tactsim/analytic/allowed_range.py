@@ -11,7 +11,7 @@ from tactsim.errors import InvalidQuantity, shown
 
 
 def checked(what: str, value: ArrayLike, allowed: str) -> np.ndarray:
-    """``value`` as an array of floats, all of which lie in ``allowed``, an interval written as in ``"(0, 0.5] m"``.
+    """``value`` as an array of floats of its shape, all of which lie in ``allowed``, an interval written as in ``"(0, 0.5] m"``.
 
     Raises
     ------

@@ -126,7 +126,7 @@ def split_kernel(delta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
     From :math:`K(m) = -K(m_1) \ln q(m_1) / \pi` with the nome q, analytic and of slope 1/16 at 0,
     :math:`A = -(2 / \pi) K(m_1) \cdot 2 / (1 + e^\delta)`. Both are analytic for :math:`|\Im \delta| < \pi`; B(0) = 3 ln 2. The
-    subtraction loses no more than ln(1 / CLOSEST) round-offs.
+    subtraction loses no more than ln(1 / CLOSEST) round-offs. Both have the shape of ``delta``.
 
     Source: Abramowitz & Stegun 1964, section 17.3 (nome).
     """
@@ -137,7 +137,7 @@ def split_kernel(delta: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def wave_quadrature(frequency: float) -> tuple[np.ndarray, np.ndarray]:
-    """Points and weights on [0, LAST_WAVE] that resolve M and the product of two waves of ``frequency`` rad per unit."""
+    """Points and weights (n,) on [0, LAST_WAVE] that resolve M and the product of two waves of ``frequency`` rad per unit."""
     panels = int(np.ceil(LAST_WAVE * max(1.0, frequency / 4)))
     edges = np.linspace(0, LAST_WAVE, panels + 1)
     points, weights = _panel_quadrature()

@@ -37,15 +37,15 @@ class DurometerScale(FrozenModel):
     """Growth k of the spring's force per unit of reading."""
 
     def depth(self, reading: float | Array) -> float | Array:
-        """Depth in m at a reading."""
+        """Depth in m at a reading, of its shape."""
         return self.travel * (1 - reading / FULL)
 
     def reading(self, depth: float | Array) -> float | Array:
-        """Reading at a depth in m."""
+        """Reading at a depth in m, dimensionless, of the depth's shape."""
         return FULL * (1 - depth / self.travel)
 
     def spring_force(self, depth: float | Array) -> float | Array:
-        """Force in N of the spring at a depth in m."""
+        """Force in N of the spring at a depth in m, of its shape."""
         return self.force_at_zero + self.force_per_unit * self.reading(depth)
 
     def checked_reading(self, reading: float) -> float:

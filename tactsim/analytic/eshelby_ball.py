@@ -15,7 +15,9 @@ def eshelby_contrast(shear_ratio: Array) -> Array:
 
     .. math:: c = \frac{5 (k - 1)}{2 k + 3}
 
-    It lies between -5/3 (a hole) and 5/2 (rigid). Source: J. D. Eshelby 1957, doi:10.1098/rspa.1957.0133, for nu = 1/2.
+    It has the shape of the ratio and lies between -5/3 (a hole) and 5/2 (rigid).
+
+    Source: J. D. Eshelby 1957, doi:10.1098/rspa.1957.0133, for nu = 1/2.
     """
     ratio = np.asarray(shear_ratio, dtype=float)
     return 5 * (ratio - 1) / (2 * ratio + 3)

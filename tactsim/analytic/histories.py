@@ -61,7 +61,7 @@ class Segment:
             raise InvalidQuantity(f"segment has value {self.value} and slope {self.slope}; allowed: finite numbers")
 
     def at(self, t: float) -> float:
-        """f(t), also outside of [start, end)."""
+        """f(t) at a time in s, also outside of [start, end)."""
         elapsed = t - self.start
         waves = sum(h.amplitude * math.sin(h.angular_frequency * elapsed + h.phase) for h in self.harmonics)
         return self.value + self.slope * elapsed + waves
@@ -77,7 +77,8 @@ class Segment:
 
 @dataclass(frozen=True, eq=False)
 class Pieces:
-    """Segments as arrays: values and slopes of shape (m,), amplitudes, angular frequencies and phases of shape (k, m)."""
+    """Segments as arrays: ``values`` (m,), ``slopes`` (m,) per second, and of the waves ``amplitudes`` (k, m),
+    ``angular_frequencies`` (k, m) in rad/s and ``phases`` (k, m) in rad."""
 
     values: Array
     slopes: Array
@@ -97,7 +98,7 @@ class Pieces:
         return cls(read_only(linear)[0], linear[1], *read_only(waves))
 
     def taken(self, index: Array | slice) -> Self:
-        """The pieces with the given indices."""
+        """The pieces with the given indices (n,)."""
         waves = (array[:, index] for array in (self.amplitudes, self.angular_frequencies, self.phases))
         return type(self)(self.values[index], self.slopes[index], *waves)
 

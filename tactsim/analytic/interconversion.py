@@ -110,7 +110,7 @@ class RateSum:
     times: Array
 
     def roots(self) -> tuple[Array, Array]:
-        """Reciprocals in s of the roots of f, and 1 / f' there, in increasing order of the root.
+        """Reciprocals (m,) in s of the roots of f, and 1 / f' (m,) there, in increasing order of the root.
 
         A root lies between each two neighbouring poles and, for c > 0, one above the last. Each is computed as its offset from
         the nearer pole, so that all differences of rates keep their digits (Li 1993, LAPACK Working Note 89).
@@ -165,7 +165,7 @@ def rate_differences(times: Array) -> Array:
 
 
 def balance(offset: float, constant: float, differences: Array, weights: Array) -> float:
-    """constant + sum w_j / (d_j - offset), divided by the sum of the sizes of its terms."""
+    """constant + sum w_j / (d_j - offset), divided by the sum of the sizes of its terms; d and w (n,), d and offset in 1/s."""
     terms = weights / (differences - offset)
     size = abs(constant) + np.abs(terms).sum()
     return float((constant + terms.sum()) / size)
@@ -173,6 +173,8 @@ def balance(offset: float, constant: float, differences: Array, weights: Array) 
 
 def root_offset(constant: float, differences: Array, weights: Array, bounds: tuple[float, float]) -> float:
     """The positive root in 1/s of ``balance`` between ``bounds``, at the lower of which it is negative but for round-off.
+
+    ``differences`` (n,) and ``bounds`` are in 1/s, ``weights`` (n,) as in `RateSum`.
 
     Brent's method in the logarithm of the offset, which may be many decades below the distance of the poles, to 1e-6; then three
     steps of Newton's method, whose relative error squares, since no pole is nearer to the root than the offset.

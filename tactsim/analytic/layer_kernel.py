@@ -111,7 +111,7 @@ class Layer:
 
 
 def sinh_excess(z: np.ndarray) -> np.ndarray:
-    """Sinh z - z to round-off for z in [0, 1], by its Taylor series."""
+    """Sinh z - z to round-off for z in [0, 1], of its shape, by its Taylor series."""
     total = np.ones_like(z)
     for n in (8, 7, 6, 5, 4, 3, 2):
         total = 1 + z**2 / ((2 * n) * (2 * n + 1)) * total

@@ -139,7 +139,7 @@ def integral(pieces: Pieces, elapsed: Array) -> Array:
 
 
 def ramp_lag(ratio: Array) -> Array:
-    """h - 1 + exp(-h) to round-off for h >= 0."""
+    """h - 1 + exp(-h) to round-off for h >= 0, of its shape."""
     small = np.minimum(ratio, SERIES_END)
     return np.where(ratio < SERIES_END, small**2 * np.polyval(SERIES, small), ratio + np.expm1(-ratio))
 
@@ -152,6 +152,7 @@ def wave_lags(ratio: Array, angle: Array, lag: Array) -> tuple[Array, Array]:
         \left[ h \frac{\sin p}{p} - \cos p + e^{-h} \right]
 
     For h < 1 the bracket is formed as (h - 1 + exp(-h)) + 2 sin(p/2)^2 - h (1 - sin(p) / p), the parts of which do not cancel.
+    ``ratio`` h, ``angle`` p and ``lag`` r are dimensionless arrays that broadcast to the shape of c and s.
     """
     bow = 2 * np.sin(angle / 2) ** 2
     early = ramp_lag(np.minimum(ratio, 1.0)) + bow - np.minimum(ratio, 1.0) * _sine_deficit(angle)

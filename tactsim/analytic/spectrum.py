@@ -47,7 +47,7 @@ def checked_number(name: str, value: float, *, zero: bool = False) -> float:
 
 
 def checked_instants(name: str, values: ArrayLike) -> Array:
-    """``values`` in s as a new array of floats, infinity allowed.
+    """``values`` in s as a new array of floats of the same shape, infinity allowed.
 
     Raises
     ------
@@ -61,7 +61,7 @@ def checked_instants(name: str, values: ArrayLike) -> Array:
 
 
 def checked_frequencies(values: ArrayLike, *, zero: bool) -> Array:
-    """Angular frequencies ``omega`` in rad/s as a new array of floats, finite and positive, or not negative if ``zero``.
+    """Angular frequencies ``omega`` in rad/s as a new array of the same shape, finite and positive, or not negative if ``zero``.
 
     Raises
     ------
@@ -75,7 +75,7 @@ def checked_frequencies(values: ArrayLike, *, zero: bool) -> Array:
 
 
 def real_array(name: str, values: ArrayLike) -> Array:
-    """A new array of floats.
+    """A new array of floats of the shape of ``values``.
 
     Raises
     ------
@@ -92,6 +92,6 @@ def real_array(name: str, values: ArrayLike) -> Array:
 
 
 def read_only(array: Array) -> Array:
-    """The same array, which can no longer be written."""
+    """The same array, of any shape, which can no longer be written."""
     array.flags.writeable = False
     return array

@@ -59,7 +59,7 @@ def kelvin_step(constants: Array, state: Array, time_step: float, stress: float)
         \varepsilon_1 = J_0 \sigma_1 + \sum_i J_i q_i + \varphi \int \sigma\, dt, \quad h_i = \Delta t / \tau_i
 
     with the stress :math:`\sigma_0` at the beginning of the step and :math:`\sigma_1 = \sigma_0 + \Delta\sigma` at its end. A
-    ``time_step`` of zero in s is a jump.
+    ``time_step`` of zero in s is a jump. ``constants`` (2 + 2 n,) and ``state`` (2 + n,), updated in place, are the module's.
 
     Raises
     ------
@@ -90,7 +90,8 @@ def maxwell_step(constants: Array, state: Array, time_step: float, strain: float
         r_k \leftarrow r_k e^{-h_k} + \Delta\varepsilon\, \frac{1 - e^{-h_k}}{h_k}, \quad
         \sigma = G_\infty \varepsilon + \sum_k G_k r_k, \quad h_k = \Delta t / \tau_k
 
-    with the strain r_k of the spring of each unit. A ``time_step`` of zero in s is a jump.
+    with the strain r_k of the spring of each unit. A ``time_step`` of zero in s is a jump. ``constants`` (2 + 2 n,) and ``state``
+    (2 + n,), updated in place, are those of the module.
 
     Raises
     ------
