@@ -61,6 +61,6 @@ class Annulus(Revolved):
         return ContactShape(self.outer_radius, self.inner_radius, self.fillet, radii=radii)
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
-        """Distance to the rounded rectangle of the section."""
+        """Distance (n,) in m, normal (2, n), Hessian (2, 2, n) in 1/m of the section, a rounded rectangle, at points (2, n)."""
         lower, upper = np.array([self.inner_radius, 0.0]), np.array([self.outer_radius, self.height])
         return rounded_box(p, lower, upper, self.fillet)

@@ -31,9 +31,9 @@ class Coulomb(ContactLaw):
         return cls()
 
     def traction_limit(self, pressure: Array) -> Array:
-        """``friction * pressure``."""
+        """``friction * pressure`` in Pa, (n,)."""
         return self.friction * pressure
 
     def traction_limit_slope(self, pressure: Array) -> Array:
-        """``friction``."""
+        """``friction``, (n,)."""
         return np.full_like(pressure, self.friction)

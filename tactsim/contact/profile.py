@@ -59,7 +59,7 @@ def rounded_box(p: Array, lower: Array, upper: Array, fillet: float) -> tuple[Ar
 
 
 def check_fillet(fillet: float, largest: float) -> None:
-    """Refuse a fillet larger than the rectangle it rounds allows.
+    """Refuse a fillet in m larger than the rectangle it rounds allows.
 
     Raises
     ------

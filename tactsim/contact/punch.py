@@ -48,6 +48,6 @@ class Punch(Revolved):
         return ContactShape(self.radius, fillet=self.fillet, radii={"radius": self.radius})
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
-        """Distance to the rounded rectangle of the section."""
+        """Distance (n,) in m, normal (2, n), Hessian (2, 2, n) in 1/m of the section, a rounded rectangle, at points (2, n)."""
         lower, upper = np.array([-self.radius, 0.0]), np.array([self.radius, self.height])
         return rounded_box(p, lower, upper, self.fillet)

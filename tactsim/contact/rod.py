@@ -33,7 +33,10 @@ class Rod(Revolved):
         return ContactShape(self.radius, tip=RoundTip(elements=9, within_radius=True), radii={"radius": self.radius})
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
-        """Distance to the half-line of the centres above the end, minus the radius."""
+        """Distance (n,) in m to the half-line of the centres above the end, minus the radius, of points (2, n).
+
+        With it normal (2, n) and Hessian (2, 2, n) in 1/m.
+        """
         height = np.minimum(p[1], self.radius)
         offset = np.stack([p[0], height - self.radius])
         reach = np.hypot(*offset)

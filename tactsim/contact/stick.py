@@ -32,9 +32,9 @@ class Stick(ContactLaw):
         return cls()
 
     def traction_limit(self, pressure: Array) -> Array:
-        """``STRONGEST`` times the pressure, where it is positive."""
+        """``STRONGEST`` times the pressure (n,) in Pa, where it is positive."""
         return np.asarray(STRONGEST * np.maximum(pressure, 0.0))
 
     def traction_limit_slope(self, pressure: Array) -> Array:
-        """``STRONGEST`` where the pressure is positive."""
+        """``STRONGEST`` where the pressure (n,) is positive."""
         return np.where(pressure > 0, STRONGEST, 0.0)

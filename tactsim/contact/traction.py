@@ -47,7 +47,7 @@ class ContactState:
 
     @classmethod
     def untouched(cls, points: Array, normals: Array) -> ContactState:
-        """No contact yet."""
+        """No contact yet; ``points`` (d, n) in m, ``normals`` (d, n)."""
         return cls(np.zeros(points.shape[1]), np.zeros_like(points), points, normals)
 
     def augmented(self, now: ContactTraction, share: float = 1.0) -> ContactState:
@@ -135,7 +135,7 @@ class ContactPair:
     held_limit: Array | None = None
 
     def with_penalty(self, penalty: Array | float, tangential_penalty: Array | float, switch_stiffness: float) -> ContactPair:
-        """The same pair with other penalties and another switch stiffness, all in Pa/m."""
+        """The same pair with other penalties and another switch stiffness, all in Pa/m, the penalties of all points or (n,)."""
         return replace(self, penalty=penalty, tangential_penalty=tangential_penalty, switch_stiffness=switch_stiffness)
 
     def traction_limit(self, pressure: Array) -> Array:

@@ -52,7 +52,7 @@ class Trapezoid(Revolved):
         return self.face / 2
 
     def half_width(self, height: float | Array) -> Array:
-        """Half width in m of the sides at heights in m above the face, corners not rounded."""
+        """Half width in m of the sides at heights in m above the face, corners not rounded; of their shape."""
         return self.radius + math.tan(self.lean) * np.asarray(height, float)
 
     @property
@@ -66,7 +66,10 @@ class Trapezoid(Revolved):
         return ContactShape(self.radius, fillet=self.fillet, radii={"radius": self.radius})
 
     def profile_distance(self, p: Array) -> tuple[Array, Array, Array]:
-        """Distance to the rounded trapezoid: its faces moved in by the fillet, then grown by it."""
+        """Distance (n,) in m to the rounded trapezoid: its faces moved in by the fillet, then grown by it; at points (2, n).
+
+        With it normal (2, n) and Hessian (2, 2, n) in 1/m.
+        """
         sine, cosine = math.sin(self.lean), math.cos(self.lean)
         sign = np.where(p[0] < 0, -1.0, 1.0)
         x, z = np.abs(p[0]), p[1]
