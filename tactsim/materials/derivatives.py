@@ -22,13 +22,13 @@ class Energy(Protocol):
     """An energy W of the invariants I1 and I2, with its derivatives."""
 
     def energy(self, I1: Array, I2: Array) -> Array:
-        """W in J/m^3."""
+        """W in J/m^3, of the shape of the invariants."""
 
     def energy_gradient(self, I1: Array, I2: Array) -> tuple[Array, Array]:
-        """(W1, W2) in Pa."""
+        """(W1, W2) in Pa, each of the shape of the invariants."""
 
     def energy_hessian(self, I1: Array, I2: Array) -> tuple[Array, Array, Array]:
-        """(W11, W12, W22) in Pa."""
+        """(W11, W12, W22) in Pa, each of the shape of the invariants."""
 
 
 def check_derivatives(law: Energy) -> None:

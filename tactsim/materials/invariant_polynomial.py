@@ -27,15 +27,15 @@ class InvariantPolynomial(Hyperelastic):
         return powers_of({name: getattr(self, name) for name in type(self).model_fields if COEFFICIENT_NAME.fullmatch(name)})
 
     def energy(self, I1: Array, I2: Array) -> Array:
-        """W in J/m^3."""
+        """W in J/m^3, of the shape of the invariants."""
         return self._derivative(I1, I2, 0, 0)
 
     def energy_gradient(self, I1: Array, I2: Array) -> tuple[Array, Array]:
-        """(W1, W2) in Pa."""
+        """(W1, W2) in Pa, each of the shape of the invariants."""
         return self._derivative(I1, I2, 1, 0), self._derivative(I1, I2, 0, 1)
 
     def energy_hessian(self, I1: Array, I2: Array) -> tuple[Array, Array, Array]:
-        """(W11, W12, W22) in Pa."""
+        """(W11, W12, W22) in Pa, each of the shape of the invariants."""
         return self._derivative(I1, I2, 2, 0), self._derivative(I1, I2, 1, 1), self._derivative(I1, I2, 0, 2)
 
     def _derivative(self, I1: Array, I2: Array, m: int, n: int) -> Array:
@@ -53,7 +53,10 @@ def powers_of(coefficients: Mapping[str, float]) -> dict[tuple[int, int], float]
 
 
 def monomial_derivative(I1: Array, I2: Array, power: tuple[int, int], order: tuple[int, int]) -> Array:
-    """The derivative of (I1 - 3)^i (I2 - 3)^j, ``order`` times (each at most 2) by I1 and I2; one number where it is constant."""
+    """The derivative of (I1 - 3)^i (I2 - 3)^j, ``order`` times (each at most 2) by I1 and I2.
+
+    It has the shape of the invariants, but is one number where it is constant.
+    """
     return np.asarray(_power_derivative(I1, power[0], order[0]) * _power_derivative(I2, power[1], order[1]))
 
 

@@ -47,14 +47,14 @@ def determinant_hessian(F: Array) -> Array:
 
 
 def strain_invariants(F: Array) -> tuple[Array, Array]:
-    """tr C and (tr^2 C - tr C^2) / 2 of C = F^T F, dimensionless."""
+    """tr C and (tr^2 C - tr C^2) / 2 of C = F^T F, dimensionless, for F of shape (3, 3, ...)."""
     C = np.einsum("iJ...,iK...->JK...", F, F)
     trace = np.einsum("JJ...->...", C)
     return trace, (trace**2 - np.einsum("JK...,JK...->...", C, C)) / 2
 
 
 def isochoric_invariants(F: Array) -> tuple[Array, Array]:
-    """J^(-2/3) tr C and J^(-4/3) (tr^2 C - tr C^2) / 2, dimensionless; both 3 at rest."""
+    """J^(-2/3) tr C and J^(-4/3) (tr^2 C - tr C^2) / 2, dimensionless, for F of shape (3, 3, ...); both 3 at rest."""
     J = determinant(F)
     i1, i2 = strain_invariants(F)
     return J ** (-2 / 3) * i1, J ** (-4 / 3) * i2

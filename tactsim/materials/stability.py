@@ -76,6 +76,7 @@ def invariant_ellipticity_margin(material: Hyperelastic, stretches: Array) -> Ar
 
     The third set makes Q_min of ``shear_conditions`` positive when x_i and x_j have one sign and x_k the other. Necessary and
     sufficient for an incompressible material; a finite bulk modulus only adds stiffness to directions with m . n != 0.
+    Principal stretches have the shape (3, ...), the margin the trailing one.
 
     Source: the conditions of Zee & Sternberg 1983, doi:10.1007/BF00281838, derived here from W(I1, I2).
     """
@@ -91,7 +92,8 @@ def invariant_drucker_margin(material: Hyperelastic, stretches: Array) -> Array:
     r"""Smallest eigenvalue in Pa of the second derivative of W by the logarithmic principal strains of constant volume.
 
     Positive where the work of an increment of Kirchhoff stress (true stress, as J = 1) on its logarithmic strain is positive in
-    every principal loading. With :math:`b_i = \lambda_i^2`, :math:`u_i = 2 b_i` and :math:`v_i = -2 / b_i`:
+    every principal loading. The eigenvalue has the trailing shape of the principal stretches (3, ...). With
+    :math:`b_i = \lambda_i^2`, :math:`u_i = 2 b_i` and :math:`v_i = -2 / b_i`:
 
     .. math::
         \frac{\partial^2 W}{\partial e_i \partial e_j} = 4 \delta_{ij} (W_1 b_i + W_2 / b_i)

@@ -80,7 +80,10 @@ def _path_stability(material: Material, stretches: Callable[[Array], Array]) -> 
 
 
 def lost_intervals(margin: Callable[[Array], Array]) -> tuple[Interval, ...]:
-    """Intervals of the scanned stretches in which a margin is not positive, ends located by root finding."""
+    """Intervals of the scanned stretches in which a margin, of the shape of its stretches, is not positive.
+
+    Their ends are located by root finding.
+    """
     stretch = np.geomspace(*SCANNED, SAMPLES)
     lost = ~(margin(stretch) > 0)
     ends = [
