@@ -54,7 +54,7 @@ random deep indentations searched for 300 solutions among states turned nearly i
 
 @dataclass(frozen=True)
 class ContactEquilibrium:
-    """An accepted state: ``load`` is the displacement in m of the rigid bodies from first touch.
+    """An accepted state: ``unknowns`` (size,), and ``load``, the displacement in m of the rigid bodies from first touch.
 
     ``reactions`` (d n,) in N are what contacts and supports exert on the nodes: the internal forces less those of the loads, as
     `check_accepted` computed them; None of a state that it has not passed.
@@ -96,7 +96,7 @@ class Action:
 def contact_equilibrium(
     problem: Problem, state: ContactEquilibrium, load: float, guess: Array, action: Action
 ) -> ContactEquilibrium:
-    """The state of ``_equilibrium``, or the reason why none can be reached from ``state`` by any shorter step.
+    """The state of ``_equilibrium`` from a ``guess`` (size,), or why none can be reached from ``state`` by any shorter step.
 
     Raises
     ------

@@ -112,7 +112,7 @@ def transferred(contact: PosedContact, surface: SurfaceAssembly, reference: Arra
 def moved_on(
     contacts: Sequence[PosedContact], distance: float, directions: Sequence[Array], regularisation: Regularisation
 ) -> list[PosedContact]:
-    """The contacts with their bodies moved on by ``distance`` in m."""
+    """The contacts with their bodies moved on by ``distance`` in m, each along a unit vector (d,)."""
     return [
         replace(contact, place=contact.place + distance * direction, pair=regularisation.applied(contact.pair, contact.state))
         for contact, direction in zip(contacts, directions, strict=True)

@@ -40,6 +40,8 @@ def guaranteed_equilibrium(
 ) -> ContactEquilibrium:
     """The state of `contact_equilibrium` with the same arguments and its reactions, once it has passed `check_accepted`.
 
+    ``load`` is in m, ``guess`` (size,) holds the unknowns.
+
     Raises
     ------
     ConvergenceError

@@ -35,7 +35,7 @@ class PosedContact:
 
     @classmethod
     def apart(cls, surface: SurfaceAssembly, reference: Array, pair: ContactPair, place: Array) -> PosedContact:
-        """A pair whose surfaces have not met yet.
+        """A pair whose surfaces have not met yet: points at ``reference`` (d, n) in m, the body at ``place`` (d,) in m.
 
         Raises
         ------
@@ -85,11 +85,11 @@ class PosedContact:
         return np.where(touching | pressed, lost, 0.0)
 
     def linearised(self, displacement: Array, iterate: ContactIterate) -> ContactTraction:
-        """Traction and derivative as the iterated forces decide."""
+        """Traction and derivative at displacements (d, n) in m of the points, as the iterated forces decide."""
         return self.pair.linearised(self._points(displacement), self.state, iterate)
 
     def advanced(self, now: ContactTraction, iterate: ContactIterate, step: Array, damping: float) -> ContactIterate:
-        """The iterated forces after a damped step."""
+        """The iterated forces after the points moved by ``damping``, a share, of a ``step`` (d, n) in m."""
         full = self.pair.advanced(now, step)
         return ContactIterate(
             iterate.pressure + damping * (full.pressure - iterate.pressure),

@@ -35,7 +35,7 @@ class Snapping(Protocol):
 
     @property
     def unknowns(self) -> Array:
-        """Those of the body."""
+        """Those of the body (size,)."""
 
 
 State = TypeVar("State", bound=Snapping)

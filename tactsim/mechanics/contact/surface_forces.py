@@ -99,7 +99,9 @@ def straight_pieces(places: Array) -> tuple[Array, Array]:
 
 
 def cut(pieces: Array, facets: Array, axis: int, borders: Array) -> tuple[Array, Array]:
-    """The triangles cut where their coordinate ``axis`` is one of the ascending ``borders``, so that none crosses a border.
+    """The triangles cut where their coordinate ``axis`` is one of the ascending ``borders`` (k,) in m, so that none crosses one.
+
+    ``pieces`` (T, 3, 4) and ``facets`` (T,) are as `straight_pieces` gives them, and so are those that are returned.
 
     All triangles are cut at once, each at the middle one of the borders that it crosses, so that the rounds grow only like the
     logarithm of the number of borders.

@@ -40,7 +40,7 @@ class Band:
 
 @dataclass(frozen=True)
 class BandMesh:
-    """How finely the annulus is computed, lengths over its outer radius."""
+    """How finely the annulus is computed, lengths over its outer radius, dimensionless."""
 
     finest: float = 0.1
     growth: float = 0.8

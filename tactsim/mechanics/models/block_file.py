@@ -42,7 +42,7 @@ class FileSource(BlockSource):
     """Name of the cell data with the tags; by default the first usual one in the file."""
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
-        """The mesh in the file, checked against the block and the number of inclusions.
+        """The mesh in the file, checked against the size in m of the block and the number of inclusions; of no ``flats`` (2, 2).
 
         Raises
         ------

@@ -154,6 +154,8 @@ class GraspModel:
     ) -> ContactEquilibrium:
         """The grasp with each jaw closed by ``closing`` in m, or on from there until each presses with a ``force`` in N.
 
+        Newton starts from the ``guess`` (size,).
+
         Raises
         ------
         ConvergenceError
@@ -180,7 +182,7 @@ class GraspModel:
         return taxel_forces(layout, faces.T.reshape(-1, 6, 2), forces, FACET_POINTS)
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
-        """Fields of a state for ParaView."""
+        """Fields of a state for ParaView; ``time`` in s, ``isochoric`` (6, E, Q) in Pa as in `cauchy_stress`."""
         return solid_frame(self.mesh, self.body, state, time=time, isochoric=isochoric)
 
     def _traction(self, state: ContactEquilibrium, side: str) -> Array:

@@ -100,7 +100,7 @@ class TetrahedraSource(SizedSource):
     """Edge length far from inclusions and jaw edges; by default 3 mm, or 0.15 of the block's least side if that is less."""
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
-        """The mesh of a block of this size in m, shipped, from the cache, or made now; finer at the edges of narrow ``flats``."""
+        """The mesh of a block of this size in m, shipped, cached, or made now; finer at edges of narrow ``flats`` (2, 2) in m."""
         from tactsim.mesh.mesh_store import stored_block_mesh
 
         stored = stored_block_mesh(size, inclusions, self.settings(size, flats))
@@ -113,12 +113,12 @@ class LayersSource(SizedSource):
     kind: Literal["layers"]
 
     def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
-        """That there is no sphere or ellipsoid, or not only one."""
+        """That there is no sphere or ellipsoid, or not only one; ``flats`` (2, 2) do not matter."""
         served = len(inclusions) == 1 and inclusions[0].solids(np.asarray(size, float))[0].ball_image() is not None
         return None if served else "layers serves exactly one ball, stretched or not"
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
-        """The mesh of a block of this size in m around its only inclusion.
+        """The mesh of a block of this size in m around its only inclusion, whatever the ``flats`` (2, 2).
 
         Raises
         ------
@@ -155,7 +155,7 @@ class GradedSource(SizedSource):
         return GAP_SHARE * self.settings(size).inclusion_size
 
     def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
-        """Which of the inclusions are of other forms, in each other's way, or below the edge of a jaw."""
+        """Which of the inclusions are of other forms, in each other's way, or below the edge of ``flats`` (2, 2) in m."""
         from tactsim.mesh.graded.block import graded_misfit
 
         reason = graded_misfit(size, inclusions, flats, self.settings(size, flats))
@@ -181,12 +181,12 @@ class StructuredSource(BlockSource):
     """Number of cells along x, y and z."""
 
     def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
-        """Which hollow inclusion its elements cannot follow."""
+        """Which hollow inclusion its elements cannot follow; ``flats`` (2, 2) do not matter."""
         hollow = next((inclusion_name(k, one) for k, one in enumerate(inclusions, 1) if one.hollow), None)
         return hollow and f"structured cannot follow the wall of {hollow}"
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
-        """The mesh of a block of this size in m.
+        """The mesh of a block of this size in m, whatever the ``flats`` (2, 2).
 
         Raises
         ------

@@ -132,6 +132,8 @@ class LoadedBody:
     ) -> ContactEquilibrium:
         """The equilibrium at these factors, reached from ``now``; its ``load`` is how far the rigid bodies moved, in m.
 
+        ``guess`` (size + 1,) holds the unknowns and that distance.
+
         Raises
         ------
         ConvergenceError
@@ -157,7 +159,10 @@ class LoadedBody:
         )
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
-        """Fields of a state for ParaView, with von Mises's stress, the mean of each element."""
+        """Fields of a state for ParaView, with von Mises's stress in Pa, the mean of each element.
+
+        ``time`` is in s, ``isochoric`` (6, E, Q) in Pa as in `cauchy_stress`.
+        """
         draw = section_frame if self.space.dim == 2 else solid_frame
         frame = draw(self.mesh, self.body, state, time=time, isochoric=isochoric)
         stress = cauchy_stress(self.body, state.unknowns, state.kinematics, isochoric)

@@ -49,7 +49,7 @@ class Translation:
         return np.broadcast_to(factor * self.distance, len(self.unknowns))
 
     def slides(self, factor: float) -> Slides:
-        """None."""
+        """None, at any factor."""
         return NO_SLIDES
 
 
@@ -67,7 +67,7 @@ class Rotation:
 
     @property
     def unknowns(self) -> Array:
-        """Those of x, then those of y."""
+        """Those of x, then those of y (2 n,)."""
         return np.concatenate([self.along_x, self.along_x + 1])
 
     def values(self, factor: float) -> Array:
@@ -77,7 +77,7 @@ class Rotation:
         return np.concatenate([(cosine - 1) * x - sine * y, sine * x + (cosine - 1) * y])
 
     def slides(self, factor: float) -> Slides:
-        """None."""
+        """None, at any factor."""
         return NO_SLIDES
 
 
@@ -97,11 +97,11 @@ class Sliding:
 
     @property
     def unknowns(self) -> Array:
-        """None, as the displacement of no unknown follows from the factor alone."""
+        """None (0,), as the displacement of no unknown follows from the factor alone."""
         return np.zeros(0, np.int64)
 
     def values(self, factor: float) -> Array:
-        """Displacements of none."""
+        """Displacements of none (0,)."""
         return np.zeros(0)
 
     def slides(self, factor: float) -> Slides:

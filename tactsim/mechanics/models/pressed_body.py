@@ -29,7 +29,10 @@ class Pressed(Protocol):
         relaxation: RelaxationStep | None = None,
         loads: Sequence[FollowerLoad] = (),
     ) -> ContactEquilibrium:
-        """The equilibrium at a displacement ``load`` in m, or on from there until the bodies press with a ``force`` in N."""
+        """The equilibrium at a displacement ``load`` in m, or on from there until the bodies press with a ``force`` in N.
+
+        Newton starts from the ``guess`` (size,).
+        """
 
 
 class PressedBody:
@@ -66,6 +69,8 @@ class PressedBody:
         self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None
     ) -> ContactEquilibrium:
         """The equilibrium at prescribed values, reached from ``now``; bodies without a force stay where they are.
+
+        ``guess`` (size + 1,) is that of `EquilibriumProblem`.
 
         Raises
         ------

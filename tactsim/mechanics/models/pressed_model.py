@@ -85,7 +85,7 @@ class PressedModel(ABC):
 
     @abstractmethod
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
-        """Fields of a state for ParaView; see `section_frame` and `solid_frame`."""
+        """Fields of a state for ParaView; ``time`` in s, ``isochoric`` (6, E, Q) in Pa; see `section_frame` and `solid_frame`."""
 
     def touching_place(self, body: RigidBody) -> Array:
         """Place (d,) in m of the body's reference point at which it first touches the undeformed surface.
@@ -129,6 +129,7 @@ class PressedModel(ABC):
 
         Parameters
         ----------
+        guess : (size,) unknowns from which Newton starts
         force : in N; with it the bodies move on from ``load`` until they press so hard
         relaxation : coefficients of the time step of materials that relax
         loads : what else acts on the tissue

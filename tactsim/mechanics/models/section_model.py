@@ -35,11 +35,14 @@ class SectionModel(PressedModel):
 
     @property
     def images(self) -> Array:
-        """One: the section stands for all that it is a section of."""
+        """One along each axis (2,): the section stands for all that it is a section of."""
         return np.ones(2)
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
-        """Fields of a state for ParaView, with the normal stress along the motion, the mean of each element."""
+        """Fields of a state for ParaView, with the normal stress in Pa along the motion, the mean of each element.
+
+        ``time`` is in s, ``isochoric`` (6, E, Q) in Pa as in `cauchy_stress`.
+        """
         frame = section_frame(self.mesh, self.body, state, time=time, isochoric=isochoric)
         stress = cauchy_stress(self.body, state.unknowns, state.kinematics, isochoric)[1, 1]
         return replace(frame, cell_data={**frame.cell_data, AXIAL_STRESS: stress.mean(axis=1)})
@@ -51,7 +54,7 @@ class SectionModel(PressedModel):
         return highest - face, axis - face
 
     def too_coarse(self, state: ContactEquilibrium, size: Size, factor: float) -> Array:
-        """Elements (numbers) whose longest deformed edge exceeds ``factor`` times the size wanted where it is now."""
+        """Numbers (m,) of elements whose longest deformed edge exceeds ``factor`` times the size wanted where it is now."""
         place = state.contacts[0].place
         deformed = self.mesh.nodes + self.space.split(state.unknowns)[0] - place
         corners = deformed[self.mesh.elements[:, :3]]
@@ -61,7 +64,7 @@ class SectionModel(PressedModel):
         return np.flatnonzero((np.linalg.norm(edges, axis=2) > factor * wanted).any(axis=1))
 
     def refined(self, state: ContactEquilibrium, marked: Array) -> tuple[SectionModel, ContactEquilibrium, Refinement]:
-        """A model with these elements split, and the same state on it: nested spaces lose nothing of the displacement."""
+        """A model with the elements ``marked`` (m,) split, and the same state on it: nested spaces lose no displacement."""
         u, p = self.space.split(state.unknowns)
         split = refined(self.mesh, marked, self.mesh.nodes + u)
         top = split.facets_on(self.mesh, self.top)
@@ -75,7 +78,7 @@ class SectionModel(PressedModel):
         return model, replace(state, unknowns=unknowns, contacts=contacts, kinematics=kinematics, reactions=None), split
 
     def highest(self, unknowns: Array, radius: float) -> tuple[float, float]:
-        """Largest height of the tissue within ``radius`` of the axis, and its height on the axis, in m.
+        """Largest height of the tissue within ``radius`` of the axis, and on the axis, in m, at unknowns (size,).
 
         Exact for the quadratic edges: their vertices of parabola count beside the nodes.
         """

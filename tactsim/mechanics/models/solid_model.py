@@ -34,11 +34,11 @@ class SolidModel(PressedModel):
 
     @property
     def images(self) -> Array:
-        """Images of the part along each axis, less those that cancel."""
+        """Images of the part along each axis (3,), less those that cancel."""
         return self.symmetry.mirrors.sum(axis=0)
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
-        """Fields of a state for ParaView."""
+        """Fields of a state for ParaView; ``time`` in s, ``isochoric`` (6, E, Q) in Pa as in `cauchy_stress`."""
         return solid_frame(self.mesh, self.body, state, time=time, isochoric=isochoric)
 
     def moment(self, contact: PosedContact, unknowns: Array) -> Array:

@@ -83,7 +83,7 @@ class Specimen(FrozenModel):
         return (0.0, *(-float(depth) for depth in depths), -self.thickness)
 
     def depth_of_cap(self, radius: float | Array) -> Array:
-        """How far the sphere of the surface has dropped at a distance in m from the axis."""
+        """How far in m the sphere of the surface has dropped at a distance in m from the axis, of its shape."""
         if self.surface_radius is None:
             return np.zeros_like(np.asarray(radius, float))
         return self.surface_radius - np.sqrt(self.surface_radius**2 - np.asarray(radius, float) ** 2)

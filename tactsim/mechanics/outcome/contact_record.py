@@ -35,7 +35,7 @@ class ContactModel(Protocol):
     problem: Problem
 
     def frame(self, state: ContactEquilibrium, *, time: float, isochoric: Array | None = None) -> FieldFrame:
-        """Fields of a state for ParaView."""
+        """Fields of a state for ParaView; ``time`` in s, ``isochoric`` (6, E, Q) in Pa as in `cauchy_stress`."""
 
 
 class FollowedPath(Protocol):

@@ -50,6 +50,8 @@ class SufficientContact:
     ) -> ContactEquilibrium:
         """The equilibrium at prescribed values, reached from ``now``; where no tighter one is reached, the last one stays.
 
+        ``guess`` (size + 1,) is that of `EquilibriumProblem`.
+
         Raises
         ------
         ConvergenceError

@@ -105,7 +105,7 @@ class EquilibriumProblem(Protocol):
     ) -> ContactEquilibrium:
         """The equilibrium at prescribed values, reached from ``now``; raises ConvergenceError.
 
-        ``guess`` holds the unknowns of the body and the displacement of the rigid bodies.
+        ``guess`` (size + 1,) holds the unknowns of the body and the displacement of the rigid bodies in m.
         """
 
 
@@ -141,7 +141,7 @@ class TimedState:
 
     @property
     def unknowns(self) -> Array:
-        """Unknowns of the body and the displacement of the rigid bodies."""
+        """Unknowns of the body and the displacement of the rigid bodies in m, (size + 1,)."""
         return np.append(self.contact.unknowns, self.contact.load)
 
     @property
