@@ -126,7 +126,7 @@ class Body:
         return body
 
     def kinematics(self, unknowns: Array) -> Kinematics:
-        """Deformation at the quadrature points."""
+        """Deformation at the quadrature points for unknowns (size,)."""
         u, _ = self.space.split(unknowns)
         shape = self.points.weights.shape
         F, invariants = np.zeros((9, *shape)), np.empty((3, *shape))
@@ -205,7 +205,7 @@ class Body:
         return out
 
     def tangent(self, unknowns: Array, state: Kinematics | None = None) -> Array:
-        """Entries of the tangent in the order of ``pattern``, a new array."""
+        """Entries (nnz,) of the tangent at unknowns (size,) in the order of ``pattern``, a new array."""
         state = self.kinematics(unknowns) if state is None else state
         u, p = self.space.split(unknowns)
         pattern = self.pattern

@@ -43,7 +43,7 @@ class FactoredLoad:
         return self._force
 
     def add_stiffness(self, data: Array, displacement: Array) -> None:
-        """Nothing, as the force does not change."""
+        """Add nothing to ``data`` (nnz,), as the force does not change with displacements (n, d)."""
 
     def of_part(self, part: BodyPart) -> FactoredLoad:
         """The share of the forces that a part of the body bears."""

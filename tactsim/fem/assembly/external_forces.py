@@ -67,7 +67,7 @@ class Interface(Protocol[Iterate, Now]):
         """Traction and derivative at displacements (d, n), as the iterated forces decide the state of each point."""
 
     def advanced(self, now: Now, iterate: Iterate, step: Array, damping: float) -> Iterate:
-        """The iterated forces after the points moved by ``damping * step``."""
+        """The iterated forces after the points moved by ``damping``, a share, of a ``step`` (d, n) in m."""
 
 
 AnyInterface = Interface[Any, Any]
@@ -81,7 +81,7 @@ class FollowerLoad(Protocol):
         """External nodal forces (size,) in N at nodal displacements (n, d)."""
 
     def add_stiffness(self, data: Array, displacement: Array) -> None:
-        """Add minus the derivative of the force to the entries ``data`` of the body's tangent."""
+        """Add minus the derivative of the force at displacements (n, d) to the entries ``data`` (nnz,) of the body's tangent."""
 
     def of_part(self, part: BodyPart) -> FollowerLoad:
         """The same load on a part of the body, as the share that the part bears of it."""

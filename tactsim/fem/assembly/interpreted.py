@@ -57,7 +57,7 @@ class InterpretedPart:
             out += np.bincount(self.unknowns[part].ravel(), np.hstack([forces, volumes]).ravel(), out.size)
 
     def add_tangent(self, state: PointState, pattern: Pattern, data: Array) -> None:
-        """Add the derivative of the residual to the entries ``data`` of a pattern."""
+        """Add the derivative of the residual to the entries ``data`` (nnz,) of a pattern."""
         for part in self._parts():
             here, weights, N = state.chosen(part), self._weights(part), self.points.pressure_values
             B, (count, points) = self._operator(part), weights.shape

@@ -50,7 +50,7 @@ class Pattern:
 
     @property
     def indices(self) -> Array:
-        """Columns of the entries, row by row."""
+        """Columns (nnz,) of the entries, row by row."""
         return self._structure[1]
 
     @cached_property
@@ -66,11 +66,11 @@ class Pattern:
 
     @property
     def color_starts(self) -> Array:
-        """Where each colour begins, and the last one ends."""
+        """Where each colour begins, and the last one ends (colours + 1,)."""
         return self._coloured[1]
 
     def matrix(self, data: Array) -> csr_matrix:
-        """The CSR matrix with these entries (no copy)."""
+        """The CSR matrix (size, size) with these entries (nnz,), which are not copied."""
         return csr_matrix((data, self.indices, self.indptr), shape=(self.size, self.size))
 
     def positions(self, rows: Array, columns: Array) -> Array:

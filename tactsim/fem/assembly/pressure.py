@@ -45,7 +45,7 @@ class FollowerPressure:
         return self.pressure * self._facets.force(displacement)
 
     def add_stiffness(self, data: Array, displacement: Array) -> None:
-        """Add the pressure times the derivative of the area vector to the entries of the tangent."""
+        """Add the pressure times the derivative of the area vector at displacements (n, d) to the tangent's entries (nnz,)."""
         self._facets.add_stiffness(data, displacement, self.pressure)
 
     def _on(self, facets: _PressedFacets, pressure: float) -> FollowerPressure:

@@ -44,7 +44,7 @@ class AnchoredSprings:
         return force
 
     def add_stiffness(self, data: Array, displacement: Array) -> None:
-        """Add the stiffness of the springs to the diagonal of the tangent."""
+        """Add the stiffness of the springs to the diagonal of the tangent, entries (nnz,)."""
         data[self._body.pattern.diagonal] += self._stiffness
 
     def total(self, displacement: Array) -> Array:

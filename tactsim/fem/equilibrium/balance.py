@@ -55,9 +55,9 @@ class Scales:
 
 @dataclass(frozen=True)
 class NewtonState:
-    """Where Newton is: ``internal`` less external nodal forces in N, displacements of the interfaces' points relative to their
-    rigid displacement in m, tractions in Pa, the relative ``residual``, and the root of the sum of all
-    squared ``unbalanced`` forces in N."""
+    """Where Newton is: ``unknowns`` (size,), ``internal`` (size,) less external nodal forces in N, displacements (d, n) of each
+    interface's points relative to its rigid displacement in m, tractions (d, n) in Pa, the relative ``residual``, and the root of
+    the sum of all squared ``unbalanced`` forces in N."""
 
     unknowns: Array
     kinematics: Kinematics
@@ -71,7 +71,8 @@ class NewtonState:
 
 @dataclass(frozen=True)
 class Equilibrium:
-    """A converged state: the unknowns, the deformation, the traction at each interface, and the residuals on the way there."""
+    """A converged state: ``unknowns`` (size,), the deformation, ``tractions`` (d, n) in Pa at each interface, and the relative
+    residuals on the way there."""
 
     unknowns: Array
     kinematics: Kinematics

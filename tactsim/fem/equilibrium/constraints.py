@@ -53,7 +53,7 @@ class Constraints:
         self.fixed, self._pattern, self._counts, self._slides = np.unique(fixed), pattern, counts, slides
 
     def apply(self, data: Array) -> Array:
-        """Clear rows and columns of what is held in the tangent entries, in place, and put one on its diagonal."""
+        """Clear rows and columns of what is held in the tangent entries (nnz,), in place, and put one on its diagonal."""
         cleared, diagonal = self._places
         data[cleared] = 0.0
         data[diagonal] = 1.0
@@ -62,7 +62,7 @@ class Constraints:
         return data
 
     def free(self, residual: Array) -> Array:
-        """Copy of a residual without the forces on what is held."""
+        """Copy of a residual (size,) without the forces on what is held."""
         out = residual.copy()
         out[self.fixed] = 0.0
         if self._slides is not None:

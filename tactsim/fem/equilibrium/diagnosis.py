@@ -35,7 +35,10 @@ def inside_out_in_words(body: Body, kinematics: Kinematics) -> str:
 
 
 def collapsed_in_words(body: Body, kinematics: Kinematics, unknowns: Array) -> str | None:
-    """The element that has kept the least part of the volume that the pressure asks for, if that is less than ``COLLAPSED``."""
+    """The element that has kept the least part of the volume that the pressure asks for, if that is less than ``COLLAPSED``.
+
+    ``unknowns`` (size,) have this deformation.
+    """
     asked = np.maximum(1 + body.compliance[:, None] * body.pressure(unknowns), 0.0)
     kept = np.where(body.linear, np.inf, (kinematics.J / np.where(asked > 0, asked, np.inf)).min(axis=1))
     element = int(kept.argmin())
@@ -47,7 +50,10 @@ def collapsed_in_words(body: Body, kinematics: Kinematics, unknowns: Array) -> s
 def not_finite_in_words(
     body: Body, kinematics: Kinematics, internal: Array, interfaces: Sequence[AnyInterface], tractions: Sequence[Array]
 ) -> str:
-    """The first element whose deformation, nodal force or contact traction is no finite number, and which of these it is."""
+    """The first element whose deformation, nodal force or contact traction is no finite number, and which of these it is.
+
+    ``internal`` (size,) is in N, the traction (d, n) of each interface in Pa.
+    """
     for what, finite in (("deformation", kinematics.F), ("stress", body.energy_slopes(kinematics, second=False))):
         bad = np.flatnonzero(~np.isfinite(finite).all(axis=(*range(finite.ndim - 2), finite.ndim - 1)))
         if len(bad):

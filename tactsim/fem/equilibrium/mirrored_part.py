@@ -65,7 +65,7 @@ class MirroredPart:
 
     @property
     def held(self) -> Array:
-        """Unknowns of the part that are zero: displacements across a plane of nodes on it."""
+        """Unknowns (k,) of the part that are zero: displacements across a plane of nodes on it."""
         node, plane = np.nonzero(self.on_planes)
         return np.sort(self.body.space.dim * node + np.array(self.axes)[plane])
 

@@ -46,7 +46,7 @@ class MirroredProblem(Problem):
         return 1 if self._part is None else self._part.copies
 
     def reached(self, balance: Balance, guess: Array, rigid_displacement: float, goal: float) -> Equilibrium:
-        """As `Problem.reached`."""
+        """As `Problem.reached`, from a ``guess`` (size,)."""
         u, _ = self.body.space.split(guess)
         if self._part is not None and not self._part.mirrors(balance.forces.nodal(u, self.body.space.size)):
             self._whole_from_now_on()

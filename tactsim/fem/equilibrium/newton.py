@@ -93,7 +93,7 @@ class Problem:
         return self.reached(balance, guess, rigid_displacement, max(self.options.tolerance, coarse))
 
     def reached(self, balance: Balance, guess: Array, rigid_displacement: float, goal: float) -> Equilibrium:
-        """The equilibrium that `solve` returns, to a residual of ``goal``; raises as that does."""
+        """The equilibrium that `solve` returns from a ``guess`` (size,), to a residual of ``goal``; raises as that does."""
         solution = _Solution(balance, self.solver, self.options, goal, self._factored)
         try:
             return solution.run(guess.copy(), rigid_displacement)

@@ -42,7 +42,7 @@ def bordered(step: Array, border: Border | None, along: Array | None) -> NewtonS
 def contact_system(
     pattern: Pattern, constraints: Constraints, data: Array, interfaces: Sequence[AnyInterface], now: Sequence[LinearisedContact]
 ) -> LinearSystem:
-    """The system of a tangent's entries, in which constraints are applied in place, and the linearised forces that are in it."""
+    """The system of a tangent's entries (nnz,), in which constraints are applied in place, and the linearised forces in it."""
 
     def nearby() -> csr_matrix:
         uncoupled = data.copy()

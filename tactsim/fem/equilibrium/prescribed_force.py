@@ -39,7 +39,7 @@ class Border:
     def displacement_step(self, step: Array, along: Array) -> float:
         """Step of the rigid displacement in m, from the step of the unknowns at rest and their step per displacement.
 
-        To the touch if nothing touches yet.
+        ``step`` and ``along`` are (size,). To the touch if nothing touches yet.
         """
         if self.slope == 0.0:
             return self.approach
@@ -70,6 +70,8 @@ class PrescribedForce:
         self, surfaces: Sequence[SurfaceAssembly], tractions: Sequence[Array], noise: Sequence[Array], tolerance: float
     ) -> float:
         """Missing force over the prescribed one, or over the round-off of the tractions as a part of the tolerance.
+
+        Of each surface the traction is (d, n), its ``noise`` (n,), both in Pa.
 
         Raises
         ------

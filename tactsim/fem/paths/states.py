@@ -16,7 +16,7 @@ class PathState(Protocol):
 
     @property
     def unknowns(self) -> Array:
-        """Unknowns, from which the first guess of the next step is extrapolated."""
+        """Unknowns (size,), from which the first guess of the next step is extrapolated."""
 
     @property
     def iterations(self) -> int:
@@ -24,14 +24,14 @@ class PathState(Protocol):
 
 
 def between(states: Mapping[float, PathState], place: float) -> Array:
-    """Unknowns at a place by interpolation between the nearest states on both sides of it, given by their places."""
+    """Unknowns (size,) at a place by interpolation between the nearest states on both sides of it, given by their places."""
     low, high = max(p for p in states if p < place), min(p for p in states if p > place)
     share = (place - low) / (high - low)
     return (1 - share) * states[low].unknowns + share * states[high].unknowns
 
 
 def beyond(states: Mapping[float, PathState], step: float) -> Array:
-    """Unknowns a ``step`` after the last of one or two states, given by their places: extrapolated from one to the other."""
+    """Unknowns (size,) a ``step`` after the last of one or two states, by their places: extrapolated from one to the other."""
     before, now = min(states), max(states)
     if before == now:
         return states[now].unknowns

@@ -55,7 +55,7 @@ class LinearSystem:
 
     @property
     def surface(self) -> Array:
-        """Numbers of the unknowns at which contact may act, by default none."""
+        """Numbers (k,) of the unknowns at which contact may act, by default none."""
         return np.zeros(0, int) if self.make_surface is None else self.make_surface()
 
 

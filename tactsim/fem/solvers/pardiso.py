@@ -148,12 +148,12 @@ class UpperHalf:
         return cls(upper, numbered.T.tocsr().data[upper], rows[upper], matrix.indices[upper])
 
     def structure(self, size: int) -> tuple[Array, Array]:
-        """Starts of its ``size`` rows and its columns, counted from one."""
+        """Starts (size + 1,) of its ``size`` rows and its columns (k,), counted from one."""
         starts = np.concatenate([[0], np.cumsum(np.bincount(self.rows, minlength=size))])
         return starts.astype(np.int32) + 1, self.columns.astype(np.int32) + 1
 
     def symmetric(self, data: Array) -> Array:
-        """Entries (k,) of the symmetric part of the matrix with the entries ``data``."""
+        """Entries (k,) of the symmetric part of the matrix with the entries ``data`` (nnz,)."""
         return (data[self.upper] + data[self.mirror]) / 2
 
     def skew(self, data: Array, some: Array | slice = slice(None)) -> Array:

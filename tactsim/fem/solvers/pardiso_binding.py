@@ -49,7 +49,9 @@ LIBRARY_VARIABLE = "PYPARDISO_MKL_RT"
 def call_pardiso(
     solver: Any, phase: int, system: tuple[Array, Array, Array], right: Array, written: Array | None = None
 ) -> Array:
-    """One phase of Pardiso; ``system`` is data, indptr and indices, ``written`` what takes the result if it is no solution.
+    """One phase of Pardiso for a right-hand side (n,); ``system`` is data (k,), indptr (n + 1,) and indices (k,).
+
+    ``written`` takes the result if that is no solution (n,).
 
     Raises
     ------
