@@ -121,7 +121,7 @@ def _with_rings(points: Array, rings: Sequence[float]) -> Array:
 
 
 def edge_graded(edges: Array, *, finest: float, growth: float, coarsest: float, reach: float = 0.0) -> Size:
-    """Size ``finest`` within ``reach`` of the edge points (n, 2), growing by ``growth`` per distance, up to ``coarsest``."""
+    """Size ``finest`` in m within ``reach`` of the edge points (n, 2), growing by ``growth`` per distance, up to ``coarsest``."""
 
     def size(points: Array) -> Array:
         distance = np.linalg.norm(points[:, None] - edges[None], axis=2).min(axis=1)
@@ -131,7 +131,8 @@ def edge_graded(edges: Array, *, finest: float, growth: float, coarsest: float, 
 
 
 def finer_at_surface(usual: Size, *, radii: Array, finest: float, growth: float, reach: float) -> Size:
-    """The usual size, but ``finest`` on the surface z = 0 within ``reach`` of radii (n,), growing by ``growth`` per distance."""
+    """The usual size, but ``finest`` in m on the surface z = 0 within ``reach`` in m of radii (n,), growing by ``growth`` per
+    distance."""
 
     def size(points: Array) -> Array:
         along = np.abs(points[:, :1] - radii).min(axis=1) - reach
@@ -143,7 +144,7 @@ def finer_at_surface(usual: Size, *, radii: Array, finest: float, growth: float,
 
 
 def graded_to_peak(usual: Size, *, finest: float, growth: float) -> Size:
-    """The usual size, but ``finest`` where the axis meets the surface z = 0, growing by ``growth`` per distance."""
+    """The usual size, but ``finest`` in m where the axis meets the surface z = 0, growing by ``growth`` per distance."""
 
     def size(points: Array) -> Array:
         fine: Array = np.minimum(usual(points), finest + growth * np.linalg.norm(points, axis=1))

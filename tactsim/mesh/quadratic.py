@@ -63,7 +63,7 @@ class QuadraticMesh:
         return facets[chosen], owner[chosen]
 
     def moved(self, nodes: Array) -> QuadraticMesh:
-        """The same mesh with other node coordinates."""
+        """The same mesh with other node coordinates (n, d) in m."""
         return QuadraticMesh(nodes, self.elements, self.regions)
 
 

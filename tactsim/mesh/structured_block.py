@@ -111,7 +111,7 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
 
 
 def outer_steps(distance: float, cell: float, settings: BlockMeshSettings) -> Array:
-    """Ascending fractions of the distance from the lump to the faces at which layers end; cells grow to the wanted size."""
+    """Ascending fractions (n,) of the distance in m from lump to faces at which layers end; cells grow to the wanted size."""
     steps = [cell]
     while sum(steps) < distance:
         steps.append(min(settings.size, steps[-1] * (1 + settings.growth)))

@@ -116,7 +116,7 @@ def mesher_version() -> str:
 
 
 def input_surface(size: Array, inclusions: Sequence[Inclusion], settings: BlockMeshSettings) -> Triangles:
-    """The surfaces of the block and of every solid in one set of triangles."""
+    """The surfaces of the block of size (3,) in m and of every solid in one set of triangles."""
     corners = np.array([[x, y, z] for x in (0.0, size[0]) for y in (0.0, size[1]) for z in (0.0, size[2])])
     quads = np.array([[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]])
     faces = outward(corners, np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]), size / 2)

@@ -137,7 +137,8 @@ def exact_volumes(surfaces: Surfaces) -> Array:
 
 
 def check(block: BlockMesh, size: Array) -> None:
-    """Refuse a mesh whose regions miss their volumes, whose faces are not flat, or of which an element is inverted.
+    """Refuse a mesh of a block of size (3,) in m whose regions miss their volumes, whose faces are not flat, or of which an
+    element is inverted.
 
     Raises
     ------

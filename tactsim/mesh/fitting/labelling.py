@@ -51,7 +51,7 @@ class Surfaces:
         return labels
 
     def columns(self, first: int, second: int) -> Array:
-        """Numbers of the patches that may lie between two labels."""
+        """Numbers (k,) of the patches that may lie between two labels."""
         if OUTSIDE in (first, second):
             return np.arange(len(FACES))
         counts = [[len(solid.patches) for solid in group] for group in self.solids]

@@ -30,7 +30,7 @@ def without_wedges(corners: Array, simplices: Array, labels: Array, walls: Inter
     """The mesh with no tetrahedron that has a side under a jaw and a side in a free face.
 
     The edge between the two corners that it does not share with the edge of the block is bisected, in every
-    tetrahedron that has it.
+    tetrahedron that has it. ``corners`` (n, 3) are in m, ``simplices`` (E, 4) corner numbers, ``labels`` (E,); the results alike.
     """
     while len(edges := _opposite_edges(simplices, walls)):
         for edge in edges:

@@ -85,7 +85,7 @@ def graded_block(
 def graded_misfit(
     size: Sequence[float], inclusions: Sequence[Inclusion], flats: Sequence[Array], settings: BlockMeshSettings
 ) -> str | None:
-    """Why inclusions between these ``flats`` cannot have graded cells; None if they may."""
+    """Why inclusions between these ``flats`` (2, 2) in m cannot have graded cells; None if they may."""
     try:
         between = _between(inclusions, footprint_of(flats, np.asarray(size, float), settings))
         if between.tubes:

@@ -114,7 +114,7 @@ def _row_axis(lumps: Sequence[Lump]) -> int | None:
 
 
 def bricks_of(lumps: Sequence[Lump], extent: Array, settings: BlockMeshSettings, finer: int) -> Bricks:
-    """The planes around lumps; ``finer`` counts how often cells across the boxes were added.
+    """The planes around lumps in a block of ``extent`` (3,) in m; ``finer`` counts how often cells across the boxes were added.
 
     Raises
     ------

@@ -48,7 +48,7 @@ class Cells:
 
     @classmethod
     def plain(cls, corners: Array, cells: Array, places: Array) -> Cells:
-        """Cells of tissue with corners in no layer."""
+        """Cells (H, 8) of tissue with ``corners`` (n, 3) in m, in no layer, and their ``places`` (n, 3)."""
         return cls(corners, cells, np.zeros(len(cells), np.int64), places, Layers.none(len(corners)))
 
     def used(self) -> Cells:
@@ -65,7 +65,7 @@ def from_boxes(lines: int, first: ArrayLike, across: int) -> Array:
 
 
 def from_box(steps: Array, half: float) -> Array:
-    """Places of lines by their ``steps`` from the middle of a box: 0 there, 1 at its sides, which are ``half`` steps away."""
+    """Places of lines by their ``steps`` from the middle of a box, of the same shape: 0 there, 1 at its sides, ``half`` away."""
     return np.where(steps > half, 1 + steps - half, steps / half)
 
 

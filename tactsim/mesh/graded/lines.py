@@ -47,8 +47,8 @@ NEAREST = 0.5
 class Line:
     """Ascending coordinates in m from face to face, those from number ``first`` on by the ``across`` cells of the box.
 
-    ``near`` holds beside the box, ``far`` at the faces along the line. There no first cell is thinner than elsewhere: those along
-    the edges of a pressed face would turn inside out when the free faces roll onto the jaw.
+    ``near`` (n,) holds beside the box, ``far`` (n,) at the faces along the line. There no first cell is thinner than elsewhere:
+    those along the edges of a pressed face would turn inside out when the free faces roll onto the jaw.
     """
 
     near: Array
@@ -58,7 +58,7 @@ class Line:
 
     @property
     def away(self) -> Array:
-        """Distance from the box over that of the face from it: 0 in the box, 1 at the faces that it does not touch."""
+        """Distance (n,) from the box over that of the face from it: 0 in the box, 1 at the faces that it does not touch."""
         begin, end = self.near[[self.first, self.first + self.across]]
         below = (begin - self.near) / (begin or np.inf)
         above = (self.near - end) / ((self.near[-1] - end) or np.inf)
@@ -88,13 +88,13 @@ def lines_around(ball: BallImage, bounds: Array, extent: Array, settings: BlockM
 
 
 def mirrored_line(length: float, settings: BlockMeshSettings) -> Array:
-    """Ascending places in m from face to face, those of one half the mirror image of the others."""
+    """Ascending places (n,) in m from face to face, those of one half the mirror image of the others."""
     half = spaced(length / 2, settings)
     return np.concatenate([half, length - half[-2::-1]])
 
 
 def box_shares(across: int, gather: float) -> Array:
-    """Ascending relative positions, -1 to 1 from side to side of the box, at which its ``across`` cells end."""
+    """Ascending relative positions (across + 1,), -1 to 1 from side to side of the box, at which its ``across`` cells end."""
     even = np.linspace(-1, 1, across + 1)
     return (1 - gather) * even + gather * even**3
 
@@ -112,7 +112,7 @@ def _end_to_end(before: Array, within: Array, after: Array) -> Array:
 
 
 def room_left(gaps: Array, settings: BlockMeshSettings, *, pressed: bool) -> Array:
-    """Distances in m of the box from faces ``gaps`` away from the lump; zero from a pressed face that is near."""
+    """Distances in m of the box from faces ``gaps`` in m away from the lump, of their shape; zero from a pressed face nearby."""
     near = gaps < NEAR * edge_thickness(settings)
     return np.where(pressed & near, 0.0, (1 - ROOM) * gaps)
 
@@ -132,8 +132,8 @@ def edge_thickness(settings: BlockMeshSettings) -> float:
 
 
 def spaced(length: float, settings: BlockMeshSettings) -> Array:
-    """Ascending places in m from a face at 0 to ``length``: the first cell ``edge_size`` thick, the others stretched to fit; or
-    one cell, if most of a second one would not find room."""
+    """Ascending places (n,) in m from a face at 0 to ``length``: the first cell ``edge_size`` thick, the others stretched to fit;
+    or one cell, if most of a second one would not find room."""
     if length <= 0:
         return np.zeros(1)
     thickness = [edge_thickness(settings)]
@@ -198,7 +198,7 @@ def _across(
 
 
 def outer_places(span: float, count: int, settings: BlockMeshSettings) -> Array:
-    """Ascending places in m from a face at 0 to ``span``, graded from the face, in a given number of cells."""
+    """Ascending places (count + 1,) in m from a face at 0 to ``span``, graded from the face, in a given number of cells."""
     thickness = edge_thickness(settings)
     steps = np.minimum(thickness * (1 + settings.growth) ** np.arange(count), settings.size)
     if count < 2 or thickness * count >= span:

@@ -71,7 +71,7 @@ def spaced(length: float, cells: int, ratio: float = 1.0) -> Array:
 
 
 def grid_domain(lines: Sequence[Array], faces: Sequence[tuple[str, str]], mirrors: Mapping[str, int] | None = None) -> Domain:
-    """A rectangle or a block of cells between ascending coordinates in m, one array for each axis.
+    """A rectangle or a block of cells between ascending coordinates (n,) in m, one array for each axis.
 
     Parameters
     ----------

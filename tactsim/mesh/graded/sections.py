@@ -56,7 +56,7 @@ class Hollow:
         return float(1 / bends.max()) if bends.max() > 0 else np.inf
 
     def leads(self, axis: int, size: Array) -> bool:
-        """Whether it goes along an axis all the way, its sections between the other faces."""
+        """Whether it goes along an axis all the way, its sections between the other faces of a block of size (3,) in m."""
         cosines = self.line.tangents(self.line.stations)[:, axis]
         if np.abs(cosines).min() < LEAST_ALONG or np.ptp(np.sign(cosines)) > 0:
             return False
@@ -140,7 +140,7 @@ class Sections:
         return replace(self, axes=(a, c, b), centers=self.centers[..., order], tangents=self.tangents[..., order])
 
     def taken(self, order: Array) -> Sections:
-        """Some of the tubes in another order."""
+        """Some of the tubes, by their numbers (m,), in another order."""
         return replace(
             self,
             ends=self.ends[order],

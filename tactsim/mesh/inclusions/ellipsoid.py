@@ -44,7 +44,7 @@ class Ellipsoid(Inclusion):
         return cls(center=(20e-3, 20e-3, 10e-3), semi_axes=(6e-3, 5e-3, 4e-3), rotation=(0.0, 0.0, np.pi / 6))
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
-        """The ellipsoid."""
+        """The ellipsoid, whatever the size (3,) of the block."""
         turn = scipy.spatial.transform.Rotation.from_euler("xyz", self.rotation).as_matrix()
         return (EllipsoidSolid(np.array(self.center), np.array(self.semi_axes), turn),)
 
@@ -78,12 +78,12 @@ class EllipsoidSolid(Solid):
         return np.linalg.norm((points - self.center) @ self.turn / self.semi_axes, axis=1) < 1
 
     def signed_distance(self, points: Array) -> Array:
-        """Distance in m, negative inside."""
+        """Distance (n,) in m of points (n, 3), negative inside."""
         distance = np.linalg.norm(points - self.project(points)[0], axis=1)
         return np.where(self.inside(points), -distance, distance)
 
     def triangles(self, edge: float) -> Triangles:
-        """Hull of the image of a spiral of points on the unit sphere."""
+        """Hull of the image of a spiral of points on the unit sphere, its edges at most about ``edge`` in m."""
         count = max(40, round(2 * np.pi * self.semi_axes.max() ** 2 / (EQUILATERAL * edge**2)))
         unit = sphere_points(count)
         faces = outward(unit, scipy.spatial.ConvexHull(unit).simplices, np.zeros(3))

@@ -34,7 +34,7 @@ class Sphere(Inclusion):
         return cls(center=(20e-3, 20e-3, 10e-3), radius=5e-3)
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
-        """The ball."""
+        """The ball, whatever the size (3,) of the block."""
         return (Ball(np.array(self.center), self.radius),)
 
 
@@ -53,5 +53,5 @@ class Ball(EllipsoidSolid):
         return self.center + self.radius * normal, normal
 
     def signed_distance(self, points: Array) -> Array:
-        """Distance in m, negative inside."""
+        """Distance (n,) in m of points (n, 3), negative inside."""
         return np.linalg.norm(points - self.center, axis=1) - self.radius

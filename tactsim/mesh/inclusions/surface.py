@@ -54,7 +54,7 @@ class Surface(Inclusion):
         return _content(*_file(self.path))
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
-        """The body inside the surface."""
+        """The body inside the surface, whatever the size (3,) of the block."""
         return (_placed(self, *_file(self.path)),)
 
 
@@ -105,7 +105,7 @@ def _content(file: OutsideFile, written: int) -> str:
 
 
 def joined(points: Array, triangles: Array, name: str) -> Triangles:
-    """The triangles with equal points joined and collapsed ones left out.
+    """The ``triangles`` (m, 3) with equal ``points`` (n, 3) joined and collapsed ones left out.
 
     Raises
     ------

@@ -37,7 +37,7 @@ class SweptSolid(Solid):
         return project
 
     def signed_distance(self, points: Array) -> Array:
-        """Distance in m, negative inside."""
+        """Distance (n,) in m of points (n, 3), negative inside."""
         parameter = self.line.nearest(points)
         on, tangent = self.line.derivatives(parameter)[0], self.line.tangents(parameter)
         low, high = self.line.limits
@@ -57,7 +57,7 @@ class SweptSolid(Solid):
         return np.hypot(along, np.maximum(across - self.radius, 0.0))
 
     def triangles(self, edge: float) -> Triangles:
-        """Rings of points along the line, and discs at its ends."""
+        """Rings of points along the line, and discs at its ends; edges are about ``edge`` in m."""
         low, high = self.line.limits
         coarse = self.line.derivatives(self.line.stations)[0]
         lengths = np.append(0.0, np.cumsum(np.linalg.norm(np.diff(coarse, axis=0), axis=1)))

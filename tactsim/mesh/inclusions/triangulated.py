@@ -83,7 +83,7 @@ class TriangulatedSolid(Solid):
         return normals
 
     def signed_distance(self, points: Array) -> Array:
-        """Distance in m, negative inside."""
+        """Distance (n,) in m of points (n, 3), negative inside."""
         near, normal = self.project(points)
         offset = points - near
         return np.copysign(np.linalg.norm(offset, axis=1), (offset * normal).sum(axis=1))

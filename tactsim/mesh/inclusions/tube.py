@@ -69,25 +69,25 @@ class Tube(Inclusion):
         return f"{super().identity()}-{WALL_SIZE}"
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
-        """The filled tube and the empty space in it, both long enough to leave the block where the tube leaves it."""
+        """The filled tube and the empty space in it, both long enough to leave the block, size (3,) in m, where the tube does."""
         line = extended(self.centre_line, self.outer_radius, tuple(map(float, size)))
         return SweptSolid(line, self.outer_radius, size), SweptSolid(line, self.inner_radius, size)
 
     def measures(self, size: Array) -> Measures:
-        """Middle between the ends, outer radius and highest point of the tube, as it is given."""
+        """Middle between the ends, outer radius and highest point of the tube, as it is given, whatever the size (3,)."""
         line = np.array(self.centre_line)
         along = line[-1] - line[0]
         center, top = (line[0] + line[-1]) / 2, float(line[:, 2].max() + self.outer_radius)
         return Measures(center, self.outer_radius, top, along / np.linalg.norm(along), self.wall)
 
     def places(self, size: Array) -> Array:
-        """Points along the centre line in the block."""
+        """Points (n, 3) in m along the centre line in the block of size (3,) in m."""
         line = extended(self.centre_line, self.outer_radius, tuple(map(float, size)))
         points = line.derivatives(np.linspace(*line.limits, ALONG_LINE))[0]
         return points[((points >= 0) & (points <= size)).all(axis=1)]
 
     def check_in_block(self, size: Array, gap: float, name: str) -> None:
-        """Refuse a tube that is too thin, too bent, or leaves the block other than by an end.
+        """Refuse a tube that is too thin, too bent, or leaves the block of size (3,) in m other than by an end.
 
         Raises
         ------
