@@ -23,7 +23,7 @@ class ForceRange:
 
 
 def root_mean_square(values: Array) -> float:
-    """Root of the mean of the squares, in the unit of the values."""
+    """Root of the mean of the squares, in the unit of the values, which have any shape."""
     return float(np.sqrt(np.mean(np.square(values))))
 
 

@@ -66,7 +66,7 @@ class Converter(FrozenModel):
         return self.low + self.step * level, np.zeros(level.shape, dtype=bool)
 
     def at_end(self, voltage: Array) -> Array:
-        """Whether converted voltages in V read the lowest or highest level, which those outside the range read too."""
+        """Whether converted voltages in V, of any shape, read the lowest or highest level, as those outside the range do too."""
         half = self.step / 2
         voltage = np.asarray(voltage, dtype=float)
         return (voltage < self.low + half) | (voltage > self.high - 3 * half)

@@ -45,6 +45,8 @@ def divider_conductance(voltage: Array, *, supply: float, load: float) -> Array:
 
     .. math:: C = \frac{1}{(V^+/V_o - 1) R} = \frac{V_o}{(V^+ - V_o) R}
 
+    It has the shape of ``voltage``; ``supply`` is in V, ``load`` in ohm.
+
     Raises
     ------
     InvalidQuantity
@@ -66,5 +68,7 @@ def divider_slope(conductance: Array, *, supply: float, load: float) -> Array:
     r"""Change of the voltage with the conductance in V/S.
 
     .. math:: \frac{dV_o}{dC} = \frac{V^+ R}{(1 + R C)^2}
+
+    It has the shape of ``conductance`` in S; ``supply`` is in V, ``load`` in ohm.
     """
     return supply * load / (1 + load * np.asarray(conductance, dtype=float)) ** 2

@@ -35,7 +35,9 @@ class LowPass(FrozenModel):
     """Number of poles."""
 
     def filtered(self, samples: Array, sampling_rate: float, state: Array | None = None) -> tuple[Array, Array]:
-        """Filtered samples, of shape ``(time, ...)`` and any unit, and the state after the last one.
+        """Filtered samples, of shape ``(time, ...)`` and any unit, and the state (sections, 2, channels) after the last one.
+
+        The sampling rate is in Hz.
 
         Raises
         ------
@@ -47,7 +49,7 @@ class LowPass(FrozenModel):
         return _run(sections, settled, samples, state)
 
     def unfiltered(self, filtered: Array, sampling_rate: float, state: Array | None = None) -> tuple[Array, Array]:
-        """Samples that the filter turned into ``filtered``, and the state after the last one.
+        """Samples that the filter turned into ``filtered``, and the state after the last one; shapes and units as there.
 
         The inverse is exact but marginally stable, as the filter blocks half the sampling rate: an error that is added to
         ``filtered`` is amplified and does not decay. It therefore takes the filter's own output, not a rounded one.
@@ -65,7 +67,7 @@ class LowPass(FrozenModel):
         return _run(inverse, -settled / first, filtered, state)
 
     def gain(self, frequency: Array, sampling_rate: float | None = None) -> Array:
-        r"""Amplitude out over in at frequencies in Hz; of the analog filter if no sampling rate is given.
+        r"""Amplitude out over in at frequencies in Hz, of their shape; of the analog filter if no sampling rate in Hz is given.
 
         .. math:: |H(f)| = 1 / \sqrt{1 + (f/f_c)^{2 n}}
         """
@@ -76,7 +78,7 @@ class LowPass(FrozenModel):
         return np.abs(response).reshape(frequency.shape)
 
     def check(self, sampling_rate: float) -> None:
-        """Whether it can be sampled at this rate.
+        """Whether it can be sampled at this rate in Hz.
 
         Raises
         ------

@@ -33,7 +33,7 @@ class Buffer(FrozenModel):
     """Voltage at its output for 0 V at its input."""
 
     def output(self, voltage: Array) -> Array:
-        """Voltage in V at the output."""
+        """Voltage in V at the output, of the shape of that at the input."""
         return voltage if self.gain_error == self.offset == 0 else (1 + self.gain_error) * voltage + self.offset
 
 
@@ -42,7 +42,7 @@ UNITY = Buffer()
 
 @dataclass(frozen=True, eq=False)
 class Recording:
-    """What the chain delivers; arrays of shape ``(time, *channels)``."""
+    """What the chain delivers; the arrays but ``time`` have the shape ``(time, *channels)``."""
 
     time: Array
     """Times in s, shape (time,)."""
@@ -87,7 +87,7 @@ class SignalChain(FrozenModel):
         return self
 
     def times(self, duration: float) -> Array:
-        """Sampling times ``k / sampling_rate`` in s from 0 up to a duration in s, both ends included.
+        """Sampling times (n,) ``k / sampling_rate`` in s from 0 up to a duration in s, both ends included.
 
         Raises
         ------
@@ -132,7 +132,7 @@ class SignalChain(FrozenModel):
         return divider_conductance(voltage, supply=self.supply, load=self.load_resistor)
 
     def read_conductance(self, voltage: Array) -> Array:
-        """Conductance in S for samples in V; one at or above the supply reads as the last number below it."""
+        """Conductance in S for samples in V, of their shape; one at or above the supply reads as the last number below it."""
         return self.conductance(np.minimum(voltage, self.largest_voltage))
 
     @property
@@ -141,7 +141,7 @@ class SignalChain(FrozenModel):
         return float(np.nextafter(self.supply, 0))
 
     def conductance_step(self, conductance: Array) -> Array:
-        """Change of the conductance in S that one step of the converter stands for, at a conductance in S."""
+        """Change of the conductance in S that one step of the converter stands for, at a conductance in S, of its shape."""
         return self.converter.step / divider_slope(conductance, supply=self.supply, load=self.load_resistor)
 
     def acquire(self, conductance: Array, generator: np.random.Generator | None = None) -> Recording:
@@ -176,9 +176,9 @@ class ChainStream:
     samples: int = 0
     """Samples taken so far."""
     phases: Array | None = None
-    """Phases in rad of the pick-up per channel, drawn with the first chunk."""
+    """Phases in rad of the pick-up, of the shape of the channels, drawn with the first chunk."""
     filter_state: Array | None = None
-    """State of the low pass; None before the first sample."""
+    """State of the low pass (sections, 2, channels); None before the first sample."""
 
     def take(self, conductance: Array) -> tuple[Recording, ChainStream]:
         """Samples of the next conductances in S, shape ``(time, *channels)``, and the stream behind them.

@@ -82,7 +82,7 @@ class CapacitiveFilm(SensorFilm):
         return float(self._force(np.array(1 / MEASURED_STRETCH)))
 
     def advance(self, state: CapacitorState | None, time: ArrayLike, force: ArrayLike) -> tuple[Array, CapacitorState]:
-        """Capacitance in F of the next samples, and the state after them; None is a film at rest.
+        """Capacitance (n, ...) in F under the next forces (n, ...) in N at times (n,) in s, and the state after; None is at rest.
 
         Raises
         ------
@@ -94,7 +94,7 @@ class CapacitiveFilm(SensorFilm):
         return self._rest_capacitance / stretch, CapacitorState(float(times[-1]))
 
     def retreat(self, state: CapacitorState | None, time: ArrayLike, signal: ArrayLike) -> tuple[Array, CapacitorState]:
-        """Force in N of the next samples of capacitance in F, and the state after them.
+        """Force (n, ...) in N of the next samples of capacitance (n, ...) in F at times (n,) in s, and the state after them.
 
         Raises
         ------
@@ -121,7 +121,7 @@ class CapacitiveFilm(SensorFilm):
         return self._rest_capacitance / (self.shear_modulus * self.area * (2 / stretch + stretch**2))
 
     def report(self, force: Array, signal: Array) -> FilmReport:
-        """Capacitance without force and its first rise; the signals show nothing else of the film."""
+        """Capacitance without force and its first rise; signals (n,) in F under forces (n,) in N show nothing else of it."""
         slope = float(self.sensitivity([0.0], [0.0])[0])
         return FilmReport(
             {
@@ -141,7 +141,7 @@ class CapacitiveFilm(SensorFilm):
         )
 
     def warnings(self, largest: float) -> tuple[str, ...]:
-        """Whether the dielectric is compressed beyond the reciprocal of the measured stretch."""
+        """Whether forces up to ``largest`` in N compress the dielectric beyond the reciprocal of the measured stretch."""
         return beyond_measured(largest, self.largest_force, "its dielectric is known up to {}")
 
     def _force(self, stretch: Array) -> Array:

@@ -39,7 +39,7 @@ COMPLEX_STEP = 1e-30
 
 @dataclass(frozen=True)
 class FilmState:
-    """Where a film stands after its last sample: time in s, forces in N and delayed strains, of the shape of the channels."""
+    """Where a film stands after its last sample: time in s, ``force`` in N, ``delayed_strain``, of the shape of the channels."""
 
     time: float
     force: Array
@@ -93,7 +93,7 @@ class Film(SensorFilm):
         return self.advance(None, time, force)[0]
 
     def advance(self, state: FilmState | None, time: ArrayLike, force: ArrayLike) -> tuple[Array, FilmState]:
-        """Conductance in S of the next samples, and the state after them; ``None`` is a film at rest."""
+        """Conductance (n, ...) in S under forces (n, ...) in N at times (n,) in s, and the state after; None is one at rest."""
         times = checked_times(time, after=None if state is None else state.time)
         forces = checked_forces(force, len(times), HOLM)
         strains = self._delayed_strains(state, times, forces)
@@ -116,7 +116,7 @@ class Film(SensorFilm):
         return np.divide(slope, forces, where=loaded, out=np.full(forces.shape, np.inf))
 
     def retreat(self, state: FilmState | None, time: ArrayLike, signal: ArrayLike) -> tuple[Array, FilmState]:
-        """Force in N of the next samples of conductance in S, creep included, and the state after them.
+        """Force (n, ...) in N of the next samples of conductance (n, ...) in S, creep included, and the state after them.
 
         Raises
         ------
@@ -134,7 +134,10 @@ class Film(SensorFilm):
         return forces, state
 
     def report(self, force: Array, signal: Array) -> FilmReport:
-        """Constants of the tunnelling and the resistances, the resistance without the contacts, and the coefficients of creep."""
+        """Constants of the tunnelling and the resistances, the coefficients of creep, and the resistance without the contacts.
+
+        The latter two are those under forces (n,) in N that give signals (n,) in S.
+        """
         alone = 1 / signal - self.composite.contact_resistance / np.sqrt(force)
         words = "the same without the contacts at the electrodes"
         felt = force * self._magnification
@@ -165,7 +168,7 @@ class Film(SensorFilm):
         return stated if self._magnification == 1 else (*stated, other)
 
     def warnings(self, largest: float) -> tuple[str, ...]:
-        """Whether the force goes beyond that of the creep tests."""
+        """Whether forces up to ``largest`` in N go beyond those of the creep tests."""
         words = "its creep was measured up to {}, beyond that lines are prolonged"
         return beyond_measured(largest, self.largest_force, words)
 

@@ -62,7 +62,7 @@ class TriggerState:
 
     @property
     def triggered(self) -> Array:
-        """Whether the level has been exceeded."""
+        """Whether the level has been exceeded, of the shape of the channels."""
         return self.index != UNTRIGGERED
 
 
@@ -153,19 +153,19 @@ class Threshold:
 
     @property
     def valid(self) -> Array:
-        """Whether a threshold was captured after the touch and without saturation."""
+        """Whether a threshold was captured after the touch and without saturation, of the shape of the channels."""
         return self.triggered & ~self.false & ~self.saturated
 
 
 def reported_threshold(state: TriggerState, times: Array, *, area: float, touch: float | Array) -> Threshold:
-    """What the sensor reports, from a state at the end of a recording sampled at ``times`` in s.
+    """What the sensor reports, from a state at the end of a recording sampled at ``times`` (n,) in s.
 
     Parameters
     ----------
     area
         Annular area in m^2.
     touch
-        Time in s at which the tissue really touches the small sensor; infinite if it never does.
+        Time in s at which the tissue really touches the small sensor, one or of the channels' shape; infinite if it never does.
 
     Raises
     ------
