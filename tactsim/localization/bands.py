@@ -55,7 +55,7 @@ def inserted_elements(elements: int, pixels: int) -> float:
 
 
 def element_positions(elements: int, pixels: int) -> Array:
-    r"""Real position of each of n elements along N pixels, counted from 1: the first at 1, the last at N.
+    r"""Real position (n,) of each of n elements along N pixels, counted from 1: the first at 1, the last at N.
 
     .. math:: i_j = 1 + (j - 1) \frac{N - 1}{n - 1}
 

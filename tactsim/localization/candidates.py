@@ -61,7 +61,8 @@ def gap_in(size: Sequence[float] | Array, given: float | None) -> float:
 
 
 def radius_steps(limits: tuple[float, float], size: Sequence[float] | Array) -> list[float]:
-    """Radii in m from the least to the largest, two at least, in steps of about a millimetre or less in a small block."""
+    """Radii in m from the least to the largest, two at least, in steps of about a millimetre, less in a small block of ``size``
+    (3,) in m."""
     return list(np.linspace(*limits, max(2, round((limits[1] - limits[0]) / (part_of_usual(size) * RADIUS_STEP)) + 1)))
 
 
@@ -120,6 +121,8 @@ def centres_and_room(axes: Sequence[Array], size: Array) -> tuple[Array, Array]:
 def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
     """Balls at every ``every``-th centre of the table with the tabulated radii nearest to ``radii``, inside the block by a gap.
 
+    All lengths are in m, ``size`` (3,) is that of the block.
+
     Raises
     ------
     InputError
@@ -149,7 +152,8 @@ def tube_candidates(
     .. math:: \Delta F = \pi r^2 \int S(x(l)) \Big/ \tfrac{4}{3} \pi r'^3 \, dl
 
     as the ball's change over its volume is the density averaged over the ball. A tube that ends is a quarter of the way, half
-    or three quarters through the block, from either side. ``spacing`` in m is that of lines in a block that is not small.
+    or three quarters through the block, from either side. ``spacing`` in m is that of lines in a block that is not small,
+    ``size`` (3,) in m that of the block.
 
     Raises
     ------

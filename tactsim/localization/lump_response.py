@@ -105,7 +105,7 @@ def spacing_of_centres(usual: float, size: Sequence[float], most: int) -> float:
 
 
 def stiffness_words(contrast: float, deviation: float = 0.0) -> str:
-    """The stiffness of a ball of this contrast in words, from one standard deviation of the contrast below to one above."""
+    """The stiffness of a ball of this contrast, dimensionless, in words, from one standard deviation below to one above."""
     low, high = (stiffness_ratio_of(contrast + off) for off in (-deviation, deviation))
     least, most = (f"{one:.2g}" if one <= MOST_TOLD_APART else f"more than {MOST_TOLD_APART:g}" for one in (low, high))
     return f"{most if least == most else f'{least} to {most}'} times as stiff as the tissue at this closing"

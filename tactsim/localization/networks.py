@@ -49,9 +49,10 @@ class Network:
 class LearnedWeights:
     r"""An ensemble that gives place and radius, and a network that decides whether there is a lump.
 
-    The inputs are what `inputs` makes of readings, over ``scale`` about ``middle``. Errors have the covariance of those of held
-    out grasps, ``covariance`` (4, 4) over the block's height squared, times :math:`e^{2 (a + b \\ln |d| / F)}` with the change d,
-    the whole force F of the reference and a and b of ``growth``, and that of the ensemble.
+    The inputs are what `inputs` makes of readings of a block of ``block_size`` (3,) in m, over ``scale`` (inputs,) about
+    ``middle`` (inputs,). Errors have the covariance of those of held out grasps, ``covariance`` (4, 4) over the block's height
+    squared, times :math:`e^{2 (a + b \\ln |d| / F)}` with the change d, the whole force F of the reference and a and b of
+    ``growth`` (2,), and that of the ensemble.
     """
 
     layout: TaxelLayout
@@ -70,7 +71,7 @@ class LearnedWeights:
     """Hash of the case of every sample of a store that was learned from or held out; empty of files of earlier versions."""
 
     def probability(self, features: Array) -> float:
-        """That there is a lump, for features (inputs,)."""
+        """Probability that there is a lump, for features (inputs,)."""
         return float(scipy.special.expit(self.presence((features - self.middle)[None] / self.scale)[0, 0]))
 
     def place(self, features: Array) -> tuple[Array, Array]:

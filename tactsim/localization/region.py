@@ -63,7 +63,7 @@ class CellRegion(Region):
         return chosen.reshape(self.weights.shape)
 
     def contains(self, point: Array, probability: float = LEVEL) -> bool:
-        """Whether the cell of the point belongs to the region; a point beyond the grid does not."""
+        """Whether the cell of the point (3,) in m belongs to the region of a probability; a point beyond the grid does not."""
         lowest = np.array([float(axis[0]) for axis in self.axes]) - self.cell / 2
         index = np.floor((np.asarray(point, dtype=float) - lowest) / self.cell).astype(int)
         if (index < 0).any() or (index >= self.weights.shape).any():
@@ -77,7 +77,7 @@ class CellRegion(Region):
         return 2 * float(np.sqrt(area / np.pi)), float(chosen.any(axis=(0, 1)).sum() * self.cell[2])
 
     def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
-        """Half-way between the middles of cells inside and outside; cells at the rim of the grid are whole."""
+        """Lines (n, 2) in m half-way between the middles of cells inside and outside; cells at the rim of the grid are whole."""
         chosen = np.pad(self.inside(probability).any(axis=away).astype(float), 1)
         steps = zip(self.axes, self.cell, strict=True)
         wider = [np.concatenate([axis[:1] - step, axis, axis[-1:] + step]) for axis, step in steps]
@@ -109,7 +109,7 @@ class GaussianRegion(Region):
             raise InvalidQuantity(f"a covariance of shape {covariance.shape}; needed: (3, 3), finite, positive definite")
 
     def contains(self, point: Array, probability: float = LEVEL) -> bool:
-        """Whether the point lies in the ellipsoid."""
+        """Whether the point (3,) in m lies in the ellipsoid of a probability."""
         away = np.asarray(point, dtype=float) - self.mean
         return bool(away @ np.linalg.solve(self.covariance, away) <= self._quantile(probability))
 
@@ -144,7 +144,7 @@ class OutlinedRegion(Region):
     outlines: Mapping[str, Sequence[Array]]
 
     def contains(self, point: Array, probability: float = LEVEL) -> bool:
-        """Whether the point lies within the outlines of every view."""
+        """Whether the point (3,) in m lies within the outlines of every view."""
         self._check(probability)
         return all(_within(np.delete(point, away), self.outlines.get(view, ())) for view, away in AWAY.items())
 

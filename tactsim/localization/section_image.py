@@ -15,7 +15,8 @@ def depth_share(upper: Array, lower: Array, form: Form = "corrected") -> Array:
     .. math:: \frac{a}{a + b} = \frac{G_L}{G_L + G_U}
 
     A lump near an array raises its signal, so that the nearer jaw draws the lump to itself (errata E13); ``as_printed`` has
-    G_U in the numerator (eq. .2.3). Negative signals count as none; where neither array has a signal, 1/2.
+    G_U in the numerator (eq. .2.3). Negative signals count as none; where neither array has a signal, 1/2. Both arrays and the
+    share have one shape.
     """
     above, below = np.maximum(upper, 0.0), np.maximum(lower, 0.0)
     total = above + below
@@ -25,6 +26,8 @@ def depth_share(upper: Array, lower: Array, form: Form = "corrected") -> Array:
 
 def lump_rows(upper: Array, lower: Array, rows: int, form: Form = "corrected") -> Array:
     r"""Row r of M, a real number, at which each column shows the centre of a lump; row 1 is the upper array.
+
+    It has the shape of the signals, (columns,) or that of one column.
 
     .. math:: r = 1 + (M - 1) \frac{G_L}{G_L + G_U}
 
@@ -76,7 +79,7 @@ def image_between(upper: Array, lower: Array, rows: int, form: Form = "corrected
 
 
 def corrected_profile(upper: Array, lower: Array, share: Array) -> Array:
-    r"""Intensity at a depth ``share`` of the thickness below the upper array.
+    r"""Intensity at a depth ``share`` of the thickness below the upper array, of the shape to which the three broadcast.
 
     .. math:: H = \min\{G_U + s (G_U + G_L),\; G_L + (1 - s)(G_U + G_L)\}, \quad s = \frac{i - 1}{M - 1}
 
