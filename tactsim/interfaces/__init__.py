@@ -72,7 +72,7 @@ class Material(CaseKind):
 
     @abstractmethod
     def volume_change(self, F: Array) -> Array:
-        """Relative change of volume, dimensionless: J - 1 or its linear part."""
+        """Relative change of volume, dimensionless: J - 1 or its linear part, of the trailing shape of ``F`` (3, 3, ...)."""
 
     @abstractmethod
     def volume_change_gradient(self, F: Array) -> Array:
@@ -163,7 +163,7 @@ class Inclusion(CaseKind):
         return None
 
     def check_in_block(self, size: Array, gap: float, name: str) -> None:
-        """Refuse a body that protrudes or comes nearer to a face than ``gap`` in m, by an InvalidQuantity that names both."""
+        """Refuse a body nearer to a face of the block, (3,) in m, than ``gap`` in m or outside; an InvalidQuantity names both."""
         check_bounds(self.solids(size)[0].bounds(), size, gap, name)
 
 

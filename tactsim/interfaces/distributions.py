@@ -71,7 +71,7 @@ class Continuous(Distribution):
         return self.numbers.unit
 
     def value(self, share: float) -> tuple[Any, float]:
-        """The quantile."""
+        """The quantile of a share from 0 to 1."""
         first, second = self.numbers.values
         if self.name == "uniform":
             return self.numbers.written(first + share * (second - first))

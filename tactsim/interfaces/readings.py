@@ -35,7 +35,7 @@ class TissueResponse(Protocol):
 
     @property
     def axes(self) -> tuple[Array, Array, Array]:
-        """Ascending centres in m along x, y and z at which it is tabulated."""
+        """Ascending centres (n,) in m along each of x, y and z at which it is tabulated."""
 
     @property
     def radii(self) -> Array:
@@ -117,7 +117,7 @@ class Readings:
             object.__setattr__(self, name, value)
 
     def taxel_places(self) -> tuple[Array, Array]:
-        """Centres of the columns along x and of the rows along y in m, from the corner of the undeformed block."""
+        """Centres of the columns (columns,) along x and of the rows (rows,) along y in m, from the undeformed block's corner."""
         middle = np.asarray(self.middle)
         return self.layout.borders("x").mean(axis=1) + middle[0], self.layout.borders("y").mean(axis=1) + middle[1]
 

@@ -102,7 +102,7 @@ class Solid(ABC):
 
 
 def check_size(size: Array) -> None:
-    """Refuse a size in m of a block that is not three positive lengths.
+    """Refuse a size in m of a block that is not three positive lengths (3,).
 
     Raises
     ------

@@ -45,7 +45,7 @@ class Variable:
         return attributes
 
     def empty(self, samples: int) -> Array:
-        """Values of samples that have none."""
+        """Values (samples, ...) of samples that have none."""
         return np.full((samples, *self.sizes), self.fill, dtype="U1" if self.dtype == "str" else self.dtype)
 
 
