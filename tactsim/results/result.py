@@ -70,7 +70,7 @@ def rows(units: Iterable[str], columns: Iterable[Iterable[float]]) -> tuple[Step
 
 @dataclass(frozen=True)
 class FieldFrame:
-    """Fields at one accepted step, as meshio writes them.
+    """Fields at one accepted step, ``time`` in s, as meshio writes them.
 
     ``points`` (n, 3) in m, ``cells`` name -> connectivity, ``point_data`` and ``cell_data`` name -> array (unit in the name).
     """
