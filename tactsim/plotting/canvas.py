@@ -244,14 +244,14 @@ def plain_decades(axis: Axes) -> None:
 
 
 def weighted_percentiles(values: np.ndarray, weights: np.ndarray, percentiles: tuple[float, ...]) -> np.ndarray:
-    """Values below which the given percentages of the weight lie."""
+    """Values below which the given percentages of the weight lie, one for each; ``values`` and ``weights`` (n,)."""
     order = np.argsort(values)
     share = np.cumsum(weights[order]) / weights.sum()
     return np.interp(np.asarray(percentiles) / 100, share, values[order])
 
 
 def robust_limits(values: np.ndarray, weights: np.ndarray) -> tuple[float, float]:
-    """The 1st and the 99th percentile of the weight, so that singular edges do not take all the colours.
+    """The 1st and the 99th percentile of the weight (n,) of values (n,), so that singular edges do not take all the colours.
 
     Values that differ by round-off only are no pattern: their limits lie apart by the values themselves.
     """
@@ -263,6 +263,6 @@ def robust_limits(values: np.ndarray, weights: np.ndarray) -> tuple[float, float
 
 
 def extension(values: np.ndarray, limits: tuple[float, float]) -> str:
-    """Which ends of a colour bar with these limits are pointed, as matplotlib calls it: those that values lie beyond."""
+    """Which ends of a colour bar with these limits are pointed, as matplotlib calls it: those that values (n,) lie beyond."""
     beyond = bool(values.min() < limits[0]), bool(values.max() > limits[1])
     return {(False, False): "neither", (True, False): "min", (False, True): "max", (True, True): "both"}[beyond]

@@ -46,7 +46,8 @@ class Surface:
 
 @dataclass(frozen=True)
 class Camera:
-    """A parallel projection: what is looked at, from which direction (both (3,)), and half the height of the picture."""
+    """A parallel projection: what is looked at, from which direction (both (3,)), and half the height of the picture; lengths in
+    the unit of the points."""
 
     focus: tuple[float, float, float]
     direction: tuple[float, float, float]
