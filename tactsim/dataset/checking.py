@@ -213,7 +213,7 @@ class Faults:
 
 
 def leaks(store: Store, status: Array) -> Iterator[Finding]:
-    """Specimens in two splits, and case ids in two splits or twice."""
+    """Specimens in two splits, and case ids in two splits or twice, by the status (samples,)."""
     try:
         split, specimen, case = store.read("split"), store.read("specimen"), store.read("case_id")
     except StorageError:
@@ -239,7 +239,8 @@ def leaks(store: Store, status: Array) -> Iterator[Finding]:
 
 
 def value_findings(store: Store, layout: Layout, status: Array) -> list[Finding]:
-    """Content that is gone, unreadable or changed, numbers that are not finite, readings that never change, equal samples."""
+    """Content that is gone, unreadable or changed, numbers that are not finite, readings that never change, equal samples; of
+    those that the status (samples,) says are computed."""
     faults = Faults()
     for read in computed_chunks(store, layout.variables, status):
         for name, reason in read.unreadable.items():

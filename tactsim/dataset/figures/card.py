@@ -47,7 +47,7 @@ def card_figures(store: str | Path) -> dict[str, Plot]:
 
 
 def spread(numbers: dict[str, tuple[Array, str]], title: str) -> Figure:
-    """Histogram of each of these values, with their units."""
+    """Histogram of each of these values (n,), with their units."""
     names = list(numbers)[:MOST_PANELS]
     rows = -(-len(names) // COLUMNS)
     with titled_figure(2.3 * COLUMNS, 1.7 * rows + TITLE, title, title_size=TITLE_SIZE) as figure:

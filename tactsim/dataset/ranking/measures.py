@@ -94,7 +94,7 @@ def outcomes(
 
 
 def measures(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, Any]:
-    """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score.
+    """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score; of blocks (3,).
 
     Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
     by the bootstrap, over the specimens; None where no sample has any.
@@ -127,7 +127,7 @@ def _size_of(one: JudgedEstimate, name: str) -> float | None:
 
 
 def penalty(one: JudgedEstimate, block_size: Array) -> float:
-    """Distance in m of the estimated from the true centre, at most half the block's plan and height together.
+    """Distance in m of the estimated from the true centre, at most half the block's (3,) plan and height together.
 
     That much is also counted for a lump that is missed and for an alarm without a lump, so that hiding does not pay; nothing is
     counted for rightly finding nothing.
@@ -148,7 +148,7 @@ def _with_misses(lumps: Sequence[JudgedEstimate], name: str, block_size: Array) 
 
 
 def binned(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, list[dict[str, Any]]]:
-    """For each label, the measures of lumps in parts of its range with equally many lumps."""
+    """For each label, the measures of lumps in parts of its range with equally many lumps; block (3,) in m."""
     lumps = [one for one in judged if one.truth.present]
     by_label: dict[str, list[dict[str, Any]]] = {}
     for label in LABELS:

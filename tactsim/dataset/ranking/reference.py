@@ -97,7 +97,7 @@ def warn_of_inclusions(reference: Result) -> None:
 
 
 def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str) -> None:
-    """Refuse a reference of another block or matrix than ``whose``.
+    """Refuse a reference of another block, ``size`` (3,) in m, or matrix than ``whose``.
 
     Raises
     ------

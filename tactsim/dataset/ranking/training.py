@@ -51,7 +51,7 @@ class Examples:
     own_noise: Array
 
     def taken(self, chosen: Array) -> Examples:
-        """Some of them."""
+        """Some of them, by their numbers (m,)."""
         return Examples(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     @staticmethod
@@ -100,7 +100,7 @@ def _examples(samples: JudgedSamples) -> Examples:
 
 
 def mirror_images(size: Array, rows: int, columns: int) -> Iterator[tuple[bool, bool, bool, bool]]:
-    """Whether x, y and z are reversed and x and y exchanged, for all that leave block and matrices as they are."""
+    """Whether x, y and z are reversed and x and y exchanged, for all that leave a block (3,) in m and matrices as they are."""
     square = rows == columns and bool(np.isclose(size[0], size[1], rtol=1e-9))
     yield from product((False, True), (False, True), (False, True), (False, True) if square else (False,))
 

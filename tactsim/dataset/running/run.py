@@ -40,7 +40,7 @@ MOST_LOSSES = 3
 
 @dataclass
 class Tally:
-    """Counts of a sweep that goes on; ``before`` samples were computed by an earlier one."""
+    """Counts of a sweep that goes on since ``begin`` in s; ``before`` samples were computed by an earlier one."""
 
     samples: int
     before: int = 0
@@ -60,7 +60,7 @@ class Tally:
     """Of the samples of each block (k, 2): their numbers, and wall times in s."""
 
     def timed(self, samples: Array, seconds: Array) -> None:
-        """Notes how long new samples took in s."""
+        """Notes how long new samples (n,) took in s, (n,)."""
         self.times.append(np.column_stack([samples, seconds]))
 
     def add(self, warnings: list[str], reasons: list[str]) -> None:

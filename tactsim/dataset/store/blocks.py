@@ -83,7 +83,7 @@ def checksum(sample: dict[str, Array], variables: Iterable[Variable]) -> Array:
 
 
 def stacked(samples: list[dict[str, Array]], variables: Iterable[Variable]) -> Block:
-    """The block of single samples."""
+    """The block of single samples: each array gets an axis (samples, ...) in front."""
     block: Block = {"sample": np.array([sample["sample"] for sample in samples], dtype=np.int64)}
     for variable in variables:
         values = [sample[variable.name] for sample in samples]

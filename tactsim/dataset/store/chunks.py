@@ -39,7 +39,7 @@ def unpacked(content: bytes, array: ArrayDescription) -> bytes:
 
 
 def decoded(content: bytes, array: ArrayDescription) -> Array:
-    """Values of the samples of a chunk from what it unpacks to; texts as objects."""
+    """Values of the samples of a chunk, of the chunk's shape, from what it unpacks to; texts as objects."""
     from numcodecs import VLenUTF8
 
     if array.dtype == "str":

@@ -102,7 +102,7 @@ class Store:
         return dict(self.group.attrs)
 
     def array(self, name: str) -> zarr.Array[Any]:
-        """The array of a variable.
+        """The array (samples, ...) of a variable.
 
         Raises
         ------
@@ -122,7 +122,7 @@ class Store:
             return array
 
     def read(self, name: str, rows: slice | Array | EllipsisType = ...) -> Array:
-        """Values of a variable, of all samples or a slice or mask of them.
+        """Values (samples, ...) of a variable, of all samples or a slice or mask of them.
 
         Raises
         ------

@@ -32,19 +32,19 @@ class ChunkRead:
 
     number: int
     numbers: Array
-    """Of its computed samples."""
+    """Of its computed samples, (n,)."""
     values: dict[str, Array]
-    """Variable -> values of these, of those variables that can be read."""
+    """Variable -> values (n, ...) of these, of those variables that can be read."""
     unreadable: dict[str, str] = field(default_factory=dict)
     """Variable -> why its chunk cannot be read."""
     gone: dict[str, Array] = field(default_factory=dict)
-    """Variable -> samples whose values are gone."""
+    """Variable -> samples (m,) whose values are gone."""
     changed: Array = field(default_factory=lambda: np.arange(0))
-    """Samples whose checksum is not that of their content."""
+    """Samples (m,) whose checksum is not that of their content."""
 
 
 def computed_chunks(store: Store, variables: Sequence[Variable], status: Array) -> Iterator[ChunkRead]:
-    """Every chunk with a sample that was computed, read and held against the checksums."""
+    """Every chunk with a sample that was computed, by its status (samples,), read and held against the checksums."""
     per_chunk = store.described["status"].chunks[0]
     for number in np.unique(np.flatnonzero(status != PENDING) // per_chunk).tolist():
         begin, end = number * per_chunk, min((number + 1) * per_chunk, len(status))
@@ -93,7 +93,7 @@ def damaged_samples(store: Store, variables: Sequence[Variable]) -> dict[str, Ar
 
 
 def mark_pending(store: Store, samples: Array) -> None:
-    """Says of samples that they are not computed.
+    """Says of samples (m,) that they are not computed.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def _remove_chunk(store: Store, name: str, number: int, reason: str) -> None:
 
 
 def refuse_holes(store: Store, names: Iterable[str], samples: Array) -> None:
-    """Refuses to read variables of samples whose content is gone; looks for the files only.
+    """Refuses to read variables of samples (m,) whose content is gone; looks for the files only.
 
     Raises
     ------
@@ -201,7 +201,7 @@ def _lasting(metadata: Any) -> dict[str, Any]:
 
 
 def refuse_changed(store: Store, samples: Array) -> None:
-    """Refuses samples whose content is not what was written, by their checksums; reads all of their variables.
+    """Refuses samples (m,) whose content is not what was written, by their checksums; reads all of their variables.
 
     Raises
     ------
@@ -223,7 +223,7 @@ def refuse_changed(store: Store, samples: Array) -> None:
 
 
 def samples_in_words(numbers: Array) -> str:
-    """Samples in words: how many, and the first of them."""
+    """Samples (m,) in words: how many, and the first of them."""
     more = f" and {len(numbers) - SHOWN} more" if len(numbers) > SHOWN else ""
     return f"{len(numbers)} samples ({', '.join(map(str, numbers[:SHOWN].tolist()))}{more})"
 
@@ -243,7 +243,7 @@ def lost_samples(store: Store, name: str, samples: Array) -> Array:
 
 
 def lost_status(store: Store) -> Array:
-    """Samples whose checksums are there while their status is gone, unless a run is about to write it."""
+    """Samples (m,) whose checksums are there while their status is gone, unless a run is about to write it."""
     if "checksum" not in store.described or os.path.lexists(store.path / JOURNAL):
         return np.arange(0)
     status, sums = store.described["status"], store.described["checksum"]

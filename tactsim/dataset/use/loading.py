@@ -164,7 +164,7 @@ def split_names(dataset: xarray.Dataset) -> list[str]:
 
 
 def chosen_samples(dataset: xarray.Dataset, split: str | Iterable[str] | None = None, *, failed: bool = False) -> Array:
-    """Numbers of the samples of a part that are done, or also of those that failed.
+    """Numbers (m,) of the samples of a part that are done, or also of those that failed.
 
     Raises
     ------
