@@ -39,9 +39,9 @@ class AnnulusDesignScene(Scene):
     times: tuple[float, ...]
     """Since the force began."""
     recommended_force: float
-    """Force on heart tissue that should not be exceeded."""
+    """Force in N on heart tissue that should not be exceeded."""
     largest_force: float
-    """Force on heart tissue that must not be exceeded."""
+    """Force in N on heart tissue that must not be exceeded."""
     design_point: DesignPoint
     """The sensor that is judged beside the map."""
     small_displacement: float

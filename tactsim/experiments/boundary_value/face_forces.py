@@ -44,7 +44,7 @@ class FaceForces:
         }
 
     def of_edges(self, state: TimedState) -> dict[str, Array]:
-        """What of ``at`` is an equal part of a reaction that several faces take: the truth is anything up to all of it."""
+        """What of ``at`` (n, d) in N is an equal part of a reaction that several faces take: the truth is anything up to all."""
         if not any(part.any() for part in self._part_of_edges.values()):
             return {}
         _, reaction = self._acting(state)

@@ -54,7 +54,7 @@ class AskedTimes(TimeStepPolicy):
         return self.policy.control(interval)
 
     def largest(self, interval: TimeInterval) -> float:
-        """That of the policy."""
+        """That of the policy, in s."""
         return self.policy.largest(interval)
 
     def stops(self, interval: TimeInterval) -> list[float]:

@@ -51,14 +51,14 @@ class ShapeFinding:
             return None
 
     def reading(self, youngs_modulus: float, scale: DurometerScale) -> float | None:
-        """Predicted reading, 0 where the indentor bottoms out; None where the curve was cut short."""
+        """Predicted reading at a Young's modulus in Pa, 0 where the indentor bottoms out; None where the curve was cut short."""
         try:
             return self.curve.reading(youngs_modulus, scale) or 0.0
         except InputError:
             return None
 
     def bottoms_out(self, youngs_modulus: float, scale: DurometerScale) -> float:
-        """1 where the indentor goes over its whole travel, else 0."""
+        """1 where, at a Young's modulus in Pa, the indentor goes over its whole travel, else 0."""
         return float(self.reading(youngs_modulus, scale) == 0.0)
 
 

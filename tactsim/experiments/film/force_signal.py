@@ -75,7 +75,7 @@ class Chirp(Wave):
         return max(self.start_frequency, self.end_frequency)
 
     def share(self, time: Array) -> Array:
-        """Half of one plus the chirp, which begins at minus one."""
+        """Half of one plus the chirp, which begins at minus one, at times in s, of their shape."""
         return (1 + scipy.signal.chirp(time, self.start_frequency, self.duration, self.end_frequency, phi=180)) / 2
 
 
@@ -103,7 +103,7 @@ class Square(Wave):
         return self.frequency
 
     def share(self, time: Array) -> Array:
-        """Zero in the first half of a period, then one or what the increments have reached."""
+        """Zero in the first half of a period, then one or what the increments have reached, at times in s, of their shape."""
         phase = self.frequency * np.asarray(time) * (1 + 1e-12)
         up = (1 - scipy.signal.square(2 * np.pi * phase)) / 2
         if self.increment is None:
@@ -125,7 +125,7 @@ class Pieces(FrozenModel):
         return self.loading.duration
 
     def sampled(self, time: Array) -> Array:
-        """Force in N at times in s, within the bounds of the pieces: round-off takes none below zero."""
+        """Force in N at times in s, of their shape, within the bounds of the pieces: round-off takes none below zero."""
         least, most = self.loading.least_and_most()
         return np.clip(self.loading.history().value(np.asarray(time)), min(least, 0.0), most)
 

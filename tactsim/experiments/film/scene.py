@@ -26,7 +26,7 @@ class CreepCurve(FrozenModel):
     time: tuple[float, ...]
     """In s."""
     strain: tuple[float, ...]
-    """At each time."""
+    """At each time, dimensionless."""
 
 
 class FilmCreepScene(Scene):

@@ -50,7 +50,7 @@ def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:
 
 
 def readout_assumptions(readout: MatrixReadout, area: float) -> tuple[str, ...]:
-    """What is assumed of sensors and electronics."""
+    """What is assumed of sensors and electronics; ``area`` in m^2 is that of a taxel."""
     line = readout.line(area)
     assumptions = [*readout.film.assumptions(), "force linear between the accepted steps, from zero at 0 s"]
     if readout.calibration is None:
@@ -78,7 +78,7 @@ def single_step(readout: MatrixReadout, reading: MatrixReading, area: float) -> 
 
 
 def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float) -> tuple[str, ...]:
-    """What a user must know of the readings."""
+    """What a user must know of the readings; ``area`` in m^2 is that of a taxel."""
     warnings = list(readout.film_of(area).warnings(float(reading.applied.max())))
     if reading.strongest_pull > 0:
         pull = format_quantity(reading.strongest_pull, "N")

@@ -47,7 +47,7 @@ def false_alarm_threshold(templates: Array, rate: float, *, draws: int, seed: in
 def detection_probability(match: Array, threshold: float) -> Array:
     r"""Probability that :math:`|z|` exceeds the threshold at the true place: :math:`\Phi(\lambda - t) + \Phi(-\lambda - t)`.
 
-    The largest match over all candidates exceeds it at least as often.
+    The largest match over all candidates exceeds it at least as often. It has the shape of ``match``.
     """
     return scipy.special.ndtr(match - threshold) + scipy.special.ndtr(-match - threshold)
 

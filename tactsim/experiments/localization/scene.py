@@ -38,7 +38,10 @@ class EstimatedShape(FrozenModel):
         return cls.model_validate(known | {"region": region})
 
     def inclusion(self, contrast: float | None = None, covariance: Array | None = None) -> EstimatedInclusion:
-        """The estimated inclusion, with the contrast and the covariance that are given: the quantities of a result hold them."""
+        """The estimated inclusion, with the contrast and the covariance that are given: the quantities of a result hold them.
+
+        ``covariance`` has the shape that `EstimatedInclusion` says.
+        """
         kept = self.region
         region = None if kept is None else OutlinedRegion({view: [np.array(line) for line in kept[view]] for view in kept})
         return EstimatedInclusion(self.kind, self.center, self.radius, contrast, covariance, region, self.line)
@@ -90,7 +93,7 @@ class DetectabilityScene(Scene):
 
     kind: Literal["detectability"] = "detectability"
     probability: float
-    """With which a lump is found."""
+    """With which a lump is found, 0 to 1."""
     false_alarms: float
     """Share of alarms without a lump."""
     noise: float

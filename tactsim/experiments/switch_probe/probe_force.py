@@ -51,7 +51,7 @@ class ProbeCurve:
 
 @dataclass(frozen=True, eq=False)
 class ProbeForces:
-    """Forces in N on the probe (n,) and on its switches (n, count), and the contact height (n,) in m."""
+    """``force`` (n,) on the probe and ``switches`` (n, count) on its switches in N, and ``contact_height`` (n,) in m."""
 
     force: Array
     switches: Array

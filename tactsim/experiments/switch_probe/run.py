@@ -52,11 +52,11 @@ class ProbeTouch:
 
     @property
     def loading(self) -> Array:
-        """Samples of the way in."""
+        """Whether each sample (n,) is one of the way in."""
         return (self.time >= 0) & (np.arange(len(self.time)) <= int(np.argmax(self.depth)))
 
     def force_at(self, depths: Array) -> Array:
-        """True force in N on the way in at depths in m."""
+        """True force in N on the way in at depths in m, of their shape."""
         return np.interp(depths, self.depth[self.loading], self.true.force[self.loading])
 
 
@@ -81,7 +81,7 @@ def force_noise(setup: SwitchProbeSetup) -> float:
 
 
 def touched(setup: SwitchProbeSetup, tissue: ProbeTissue, rate: float, generator: np.random.Generator) -> ProbeTouch:
-    """Press, record and read.
+    """Press at a rate in m/s, record and read.
 
     Raises
     ------
@@ -145,7 +145,7 @@ def _interpolated(states: list[ProbeState], time: Array) -> ProbeForces:
 
 
 def followed(setup: SwitchProbeSetup, pressed: ProbeForces, depth: Array) -> ProbeForces:
-    """The same force, with tissue on the sides up to its undeformed surface, as the thesis takes it.
+    """The same force at depths (n,) in m, with tissue on the sides up to its undeformed surface, as the thesis takes it.
 
     Every switch carries the mean pressure over the probe's width at that surface, on the part of its strip that is covered.
     """

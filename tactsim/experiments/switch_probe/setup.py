@@ -151,7 +151,7 @@ class SwitchProbeSetup(FrozenModel):
         return default_penetration(1e-3 * self.probe.radius, self.depth)
 
     def indentation(self, tissue: ProbeTissue, rate: float) -> ProbeIndentation:
-        """The finite element simulation of the way in, in plane strain."""
+        """The finite element simulation of the way in at a rate in m/s, in plane strain."""
         ramp = {"kind": "ramp", "to": self.depth, "duration": self.duration(rate)}
         return ProbeIndentation(
             specimen=Specimen(material=tissue.material, thickness=self.block.height, radius=self.block.width / 2),

@@ -52,7 +52,7 @@ class Reading:
     state: str
     """``no contact``, ``threshold not reached`` or ``measured``."""
     force: Array
-    """Reported threshold force in N; meaningless where not valid."""
+    """Reported threshold force (trials,) in N; meaningless where not ``valid`` (trials,)."""
     valid: Array
 
     @classmethod
@@ -62,7 +62,7 @@ class Reading:
 
     @classmethod
     def of_trials(cls, lag: float, sampled: Trials, *, reached: bool, trials: int) -> Self:
-        """From its trials; without noise those of the sampling phases are repeated."""
+        """From its trials and the ``lag`` in m; without noise those of the sampling phases are repeated."""
         force = np.resize(sampled.true_force + sampled.error, trials)
         state = "measured" if reached else "threshold not reached"
         return cls(lag, state, force, np.resize(sampled.valid, trials))

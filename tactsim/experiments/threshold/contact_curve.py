@@ -38,20 +38,20 @@ class SensorShape:
 
 @dataclass(frozen=True)
 class Approach:
-    """What acts on a sensor that moves into tissue at a constant speed; times in s since the face touched."""
+    """What acts on a sensor that moves into tissue at a constant speed in m/s; times in s since the face touched."""
 
     speed: float
     duration: float
-    """Until the end of what is known."""
+    """Time in s until the end of what is known."""
     touch: float
-    """When the tissue touches the small sensor."""
+    """Time in s at which the tissue touches the small sensor."""
     threshold_force: float
     """On the plate at the touch, in N."""
     forces: Callable[[Array], tuple[Array, Array]]
     """Forces in N on the plate and on the small sensor at times of shape (n,), each (n,)."""
 
     def at(self, times: Array) -> tuple[Array, Array]:
-        """Forces in N on plate and small sensor; 0 before the face touches, never negative."""
+        """Forces (n,) in N on plate and small sensor at times (n,) in s; 0 before the face touches, never negative."""
         plate, small = self.forces(np.clip(times, 0.0, self.duration))
         return np.maximum(plate, 0.0), np.maximum(small, 0.0)
 
@@ -85,7 +85,7 @@ class ContactCurve:
 
     @classmethod
     def of_rows(cls, shape: SensorShape, columns: dict[str, Array]) -> Self:
-        """From rows with a force on the small sensor, which begins after the row of the touch.
+        """From rows with a force on the small sensor, which begins after the row of the touch; columns (n,) in m and N.
 
         Raises
         ------

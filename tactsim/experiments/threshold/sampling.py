@@ -65,7 +65,7 @@ class Trials:
 
     @classmethod
     def joined(cls, parts: list[Threshold], true_force: float, touches: list[float]) -> Self:
-        """From the reports of blocks with their times of touch."""
+        """From the reports of blocks with their times of touch in s, and the true force in N."""
         touch = np.concatenate([np.full(part.force.shape, at) for part, at in zip(parts, touches, strict=True)])
 
         def column(name: str) -> Array:
@@ -105,7 +105,7 @@ class ApproachSampling:
     def settled(
         cls, sensor: ThresholdSensor, approach: Approach, area: float, lead: float, low_passes: Sequence[LowPass | None]
     ) -> Self:
-        """With the time that the slowest low pass needs to settle."""
+        """For an annular ``area`` in m^2 and a ``lead`` in s, with the time that the slowest low pass needs to settle."""
         settling = max((SETTLING / low.cutoff for low in low_passes if low is not None), default=0.0)
         return cls(sensor, approach, area, lead, settling)
 
@@ -166,7 +166,7 @@ class ApproachSampling:
     def captured(
         self, sensor: ThresholdSensor, recording: Recording, low_pass: LowPass | None, trigger: ThresholdTrigger
     ) -> tuple[TriggerState, Array]:
-        """What the trigger, once armed, makes of a recording, and the times in s of the samples it saw."""
+        """What the trigger, once armed, makes of a recording, and the times (n,) in s of the samples it saw."""
         armed = slice(int(np.ceil(self.settling * sensor.chain.sampling_rate)), None)
         large, small = (values[armed] for values in sensor.readings(recording, low_pass))
         return trigger.captured(large, small, np.any(recording.saturated[armed], axis=1)), recording.time[armed]

@@ -108,6 +108,6 @@ def named_lines(count: int, *, every: bool) -> list[int]:
 
 
 def inclusions_of(frame: FieldFrame) -> dict[int, Array]:
-    """Nodes of every inclusion, by its number."""
+    """Numbers (n,) of the nodes of every inclusion, by its number."""
     regions, elements = regions_of(frame), frame.cells["tetra10"]
     return {int(k): np.unique(elements[regions == k]) for k in np.unique(regions) if k > 0}

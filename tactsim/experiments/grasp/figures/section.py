@@ -50,7 +50,10 @@ class CuttingPlane:
 
 
 def cutting_plane(frame: FieldFrame, size: Array) -> CuttingPlane:
-    """The plane through the inclusion whose middle is the farthest from both jaws; a long one is cut across its length."""
+    """The plane through the inclusion whose middle is the farthest from both jaws; a long one is cut across its length.
+
+    ``size`` (3,) in m is that of the block.
+    """
     places, inclusions = deformed(frame), inclusions_of(frame)
     if not inclusions:
         return CuttingPlane(1, float(size[1] / 2), 0)

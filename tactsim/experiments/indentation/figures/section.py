@@ -81,7 +81,7 @@ def pressure_bar(axis: Axes, drawn: Any, pressure: Array, limits: tuple[float, f
 
 
 def draw_field(axis: Axes, section: Section, values: Array, sides: tuple[float, ...], **style: Any) -> Any:
-    """Colours the section, or its mirror image where a side is -1, by nodal values; returns the mappable of the last side."""
+    """Colours the section, or its mirror image where a side is -1, by nodal values (n,); returns the last side's mappable."""
     quarters = section.elements[:, QUARTERS].reshape(-1, 3)
     r, z = section.places.T
     for side in sides:
