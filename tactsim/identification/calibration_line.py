@@ -50,7 +50,7 @@ class CalibrationFit:
 
     @property
     def excluded(self) -> Array:
-        """Number of saturated points left out per sensor."""
+        """Number of saturated points left out per sensor, shape (...)."""
         return np.count_nonzero(~self.used, axis=0)
 
     def band(self, force: Array) -> Array:

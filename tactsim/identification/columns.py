@@ -53,7 +53,7 @@ def read_columns(path: str | Path, units: dict[str, str], *, complete: bool = Fa
 
 
 def tests_by(columns: dict[str, Array], name: str, unit: str, fewest: int) -> Iterator[tuple[float, dict[str, Array]]]:
-    """Each value of a column, ascending, with the other columns of the rows that have it: the tests of one file.
+    """Each value of a column (n,), ascending, with the other columns of the rows that have it: the tests of one file.
 
     Raises
     ------

@@ -28,7 +28,7 @@ class ComplianceBand:
     """Elastic (row 0) and viscous (row 1) compliance in 1/Pa with their limits, all of shape (2, frequencies)."""
 
     frequencies: Array
-    """In Hz."""
+    """In Hz, shape (frequencies,)."""
     centre: Array
     lower: Array
     upper: Array
@@ -49,7 +49,7 @@ class ComplianceBand:
 def least_squares_band(
     fit: DmaFit, frequencies: Array, *, confidence: float = 0.95, simultaneous: bool = True, replicates: int = 400, seed: int = 1
 ) -> ComplianceBand:
-    r"""Band about a least-squares fit, from a parametric bootstrap of the spectrum.
+    r"""Band about a least-squares fit at frequencies (n,) in Hz, from a parametric bootstrap of the spectrum.
 
     Data are drawn from the fitted spectrum with the noise of the data, and fitted again. With the logarithmic deviation
     :math:`\delta = \ln D^* - \ln \hat D` of each replicate from the curve it was drawn from, its root mean square :math:`s`
@@ -78,7 +78,8 @@ def least_squares_band(
 def genetic_band(
     fit: DmaFit, frequencies: Array, *, confidence: float = 0.95, simultaneous: bool = True, replicates: int = 400, seed: int = 1
 ) -> ComplianceBand:
-    r"""Band about a fit of eq. 4.5.2 by search: the noise's part as in ``least_squares_band``, and the search's on top.
+    r"""Band about a fit of eq. 4.5.2 by search: the noise's part as in ``least_squares_band``, and the search's on top; at
+    frequencies (n,) in Hz.
 
     What the search approaches, the least of eq. 4.5.2 in its squared form, is the unweighted non-negative spectrum, which is
     computed exactly; its bootstrap gives c s. How far the search stayed from it is known at each frequency, so that the band is

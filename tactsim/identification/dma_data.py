@@ -87,6 +87,8 @@ def synthetic_dma(
 ) -> DmaData:
     """Data of a model: each elastic and viscous compliance times ``1 + noise z`` with independent standard normal ``z``.
 
+    The frequencies (n,) are in Hz.
+
     Raises
     ------
     InvalidQuantity
@@ -104,7 +106,7 @@ def read_dma(path: str | Path, relative_noise: ArrayLike | None = None) -> DmaDa
 
     Beside the frequency stand two columns: ``storage modulus`` and ``loss modulus``, ``elastic compliance`` and
     ``viscous compliance`` (``[1/MPa]``), or ``dynamic modulus`` and ``phase`` (``[deg]``), with
-    :math:`D^* = 1 / E^*` and :math:`E^* = |E^*| e^{i \delta}`.
+    :math:`D^* = 1 / E^*` and :math:`E^* = |E^*| e^{i \delta}`. The noise has a shape of `DmaData`.
 
     Raises
     ------

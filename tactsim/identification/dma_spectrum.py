@@ -21,13 +21,13 @@ ROUND_OFF = 1e-13
 
 
 def retardation_grid(frequencies: Array) -> Array:
-    """Retardation times in s, evenly spaced in the logarithm, for data at ``frequencies`` in Hz."""
+    """Retardation times (m,) in s, evenly spaced in the logarithm, for data at ``frequencies`` (n,) in Hz."""
     omega = 2 * np.pi * np.asarray(frequencies)
     return grid_of_times(SHORTEST / omega.max(), LONGEST / omega.min())
 
 
 def grid_of_times(shortest: float, longest: float) -> Array:
-    """Times in s, evenly spaced in the logarithm, at least two."""
+    """Times (m,) in s, evenly spaced in the logarithm, at least two."""
     return np.geomspace(shortest, longest, max(2, 1 + int(np.ceil(POINTS_PER_DECADE * np.log10(longest / shortest)))))
 
 
@@ -102,7 +102,10 @@ def estimated_noise(data: DmaData) -> Array:
 
 
 def residual_noise(basis: Array, compliance: Array, spectrum: Array) -> float:
-    """Relative standard deviation of the noise from the residuals of a spectrum; see ``estimated_noise``."""
+    """Relative standard deviation of the noise from the residuals of a spectrum; see ``estimated_noise``.
+
+    ``basis`` (2 n, m) is dimensionless, ``compliance`` (2 n,) and ``spectrum`` (m,) are in 1/Pa.
+    """
     residual = basis @ spectrum / compliance - 1
     free = max(1, residual.size - int((spectrum > 0).sum()))
     return max(ROUND_OFF, float(np.sqrt(residual @ residual / free)))

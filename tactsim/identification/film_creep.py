@@ -30,7 +30,8 @@ class CreepTest:
 
 @dataclass(frozen=True, eq=False)
 class CreepFit:
-    """The ``CREEP_COEFFICIENTS`` (3,) of one test in their order, their half-widths (3,), residuals (n,) of the strain."""
+    """The ``CREEP_COEFFICIENTS`` (3,) of a test under a force in N, in their order, their half-widths (3,), residuals (n,) of the
+    strain."""
 
     force: float
     coefficients: Array
@@ -121,7 +122,7 @@ def coefficient_lines(fits: Sequence[CreepFit], *, confidence: float = 0.95) -> 
 def synthetic_creep(
     composite: Composite, forces: Sequence[float], times: Array, *, noise: float, generator: np.random.Generator
 ) -> list[CreepTest]:
-    """Tests on the reference area with Gaussian noise, its standard deviation relative to each test's last strain."""
+    """Tests at times (n,) in s on the reference area, with Gaussian noise of a standard deviation relative to the last strain."""
     tests = []
     for force in forces:
         strain = creep_strain(composite, force, times)

@@ -70,7 +70,7 @@ class RelaxationFit:
     fraction_intervals: Array
     """Lower and upper ends (2, units) of the intervals of 95 % of the fractions, if the material has so many units."""
     time_intervals: Array
-    """The same of the times in s."""
+    """The same (2, units) of the times in s."""
     equilibrium_interval: tuple[float, float]
     """The same of the part of the response that stays."""
 

@@ -100,7 +100,7 @@ class UniaxialFit:
 
 
 def uniaxial_nominal_stress(material: Hyperelastic, stretch: Array) -> Array:
-    r"""Nominal stress in Pa at uniaxial stretches.
+    r"""Nominal stress in Pa at uniaxial stretches, of their shape.
 
     .. math:: P = 2 (\lambda - \lambda^{-2}) (W_1 + W_2 / \lambda)
 
@@ -110,7 +110,7 @@ def uniaxial_nominal_stress(material: Hyperelastic, stretch: Array) -> Array:
 
 
 def uniaxial_stress_as_printed(c10: float, c01: float, stretch: Array) -> Array:
-    r"""True stress in Pa by the printed formula, which has no c11.
+    r"""True stress in Pa at stretches, of their shape, by the printed formula, which has no c11.
 
     .. math:: \sigma = 2 (\lambda^2 - \lambda^{-1}) (c_{10} + c_{01} / \lambda)
 

@@ -101,7 +101,7 @@ class LeastSquares:
         return constants
 
     def fitted_basis(self, data: Array) -> Array:
-        """Directions of the residuals (n, k <= m) along which the data alone decide: Q but for the conditions that hold z."""
+        """Directions (n, k) of the residuals along which the data y (m,) alone decide: Q but for the conditions that hold z."""
         if self.normals is None:
             return self.basis
         pushed = self.projected(data)
@@ -131,7 +131,7 @@ def _projected(data: Array, normals: Array, held: list[int]) -> Array:
 
 
 def ellipticity_rows(names: tuple[str, ...]) -> Array:
-    r"""Rows r with r . c >= 0: the conditions of strong ellipticity, all convex in the constants, as linear ones.
+    r"""Rows r (n, m) with r . c >= 0: the conditions of strong ellipticity, all convex in the m constants, as n linear ones.
 
     They are those of the energy less a part, ``SMALLEST_SHEAR_FRACTION``, of the neo-Hookean one of the same shear modulus. The
     third set, see `shear_conditions`, is the envelope of its tangents,
