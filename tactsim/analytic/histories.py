@@ -67,7 +67,7 @@ class Segment:
         return self.value + self.slope * elapsed + waves
 
     def part(self, start: float, end: float) -> Segment:
-        """The same function on [start, end)."""
+        """The same function on [start, end), both in s."""
         if (start, end) == (self.start, self.end):
             return self
         shift = start - self.start

@@ -35,7 +35,7 @@ DAMAGE = (*_ARCHIVE, *_HEADER_TEXT, *_CONTENT)
 
 
 def read_arrays(content: bytes, name: str, *, largest: int | None = None) -> dict[str, Array]:
-    """The arrays of an npz file by name.
+    """The arrays of an npz file by name, of the shapes that the file says.
 
     Parameters
     ----------

@@ -93,7 +93,7 @@ def png(figure: Figure) -> bytes:
 
 
 def pressure_unit(pressures: Array) -> tuple[str, float]:
-    """The unit that suits the median size of pressures in Pa, and the factor to it."""
+    """The unit that suits the median size of pressures in Pa, of any shape, and the factor to it."""
     size = float(np.median(np.abs(pressures)))
     for unit, scale in (("MPa", 1e6), ("kPa", 1e3)):
         if size >= scale:

@@ -30,7 +30,7 @@ State = TypeVar("State", bound=TimedState)
 
 @dataclass(frozen=True)
 class TimeControl:
-    """How steps grow and shrink; the error of a step is of second to third order in its length (s)."""
+    """How steps, in s, grow and shrink; the error of a step is of second to third order in its length."""
 
     tolerance: float
     first: float
@@ -75,7 +75,7 @@ class TimeMarcher(Generic[State]):
     def march(
         self, start: State, stops: Sequence[float], *, largest: float, event: TimeEvent[State] | None = None
     ) -> Iterator[tuple[State, bool]]:
-        """Yield every accepted state up to the last of the times ``stops`` or the event, with whether it is the event.
+        """Yield every accepted state up to the last of the times ``stops`` in s or the event, with whether it is the event.
 
         Raises
         ------

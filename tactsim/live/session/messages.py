@@ -85,7 +85,7 @@ class Scales:
         self.ends = np.zeros(len(VIEWS) + 1)
 
     def take(self, pictures: list[Array], forces: Array) -> None:
-        """Lets a frame in."""
+        """Lets a frame in: its ``pictures`` (rows, columns) and ``forces`` (jaw, row, column) in N."""
         largest = [float(picture.max(initial=0.0)) for picture in pictures]
         strongest = float(np.nan_to_num(forces, nan=0.0).max(initial=0.0))
         self.ends = np.maximum(self.ends, [*largest, strongest])

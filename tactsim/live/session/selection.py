@@ -142,7 +142,7 @@ class Selection:
         return state
 
     def signals(self) -> list[tuple[Array, Array]]:
-        """Signals that the views draw and forces at some steps of the recording, for the ends of the colour scales."""
+        """Signals that the views draw and forces, (jaw, row, column) in N, at some steps, for the ends of the colour scales."""
         recording, signals = self.recording, []
         count = 0 if recording is None else len(recording.times)
         for step in np.unique(np.linspace(0, count - 1, min(count, MOST_RANGED)).astype(int)) if count else ():

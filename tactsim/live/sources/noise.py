@@ -32,7 +32,8 @@ def given_noise(deviation: float) -> ReadingNoise:
 
 
 def solution_noise(forces: Array) -> ReadingNoise:
-    """Of forces of a solution in N, which no sensor has read: the error of their mesh; that of sensors if no force is known."""
+    """Of forces of a solution in N, of any shape, which no sensor has read: the error of their mesh; that of sensors if none is
+    known."""
     largest = float(np.abs(np.where(np.isfinite(forces), forces, 0.0)).max(initial=0.0))
     if largest == 0:
         return RESOLVED

@@ -76,7 +76,7 @@ class Samples:
         return stored_sweep(Store.open(self.place))
 
     def chosen(self, split: str = ANY, status: str = ANY) -> Array:
-        """Numbers of the samples of a part and a status, all if these are empty.
+        """Numbers (m,) of the samples of a part and a status, all if these are empty.
 
         Raises
         ------

@@ -101,7 +101,7 @@ def check_extent(size: Array) -> None:
 
 
 def plain_scene(title: str, size: Array, layout: TaxelLayout) -> PageScene:
-    """A scene of which no more is known: the jaws are a quarter wider than the block and touch it in its middle."""
+    """A scene of which no more is known: the jaws are a quarter wider than the block, (3,) in m, and touch it in its middle."""
     check_extent(size)
     settings = JawSettings()
     settings = settings.model_copy(update={"fillet": min(settings.fillet, FILLET * float(size.min()))})
@@ -150,7 +150,7 @@ class Frame:
         return tuple(notes)
 
     def shown_forces(self) -> Array:
-        """The forces as they are drawn and sent: NaN where the number is no force."""
+        """The forces (jaw, row, column) in N as they are drawn and sent: NaN where the number is no force."""
         return np.where(np.abs(self.forces) <= LARGEST_FORCE, self.forces, np.nan)
 
     def readings(self, scene: PageScene) -> Readings:

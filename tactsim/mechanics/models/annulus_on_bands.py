@@ -47,7 +47,7 @@ class BandMesh:
     sectors: int = 6
     """In the half turn that is computed."""
     width: float = 5.0
-    """Radius of the piece of tissue."""
+    """Radius of the piece of tissue, over that of the annulus."""
 
 
 @dataclass(frozen=True)

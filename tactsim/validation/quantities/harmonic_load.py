@@ -50,7 +50,7 @@ def units_by_speed(chosen: str) -> GeneralizedKelvin:
 
 
 def truncated(values: Array | float, step: float) -> Array:
-    """The values with all digits below ``step`` cut off toward zero, as the thesis writes its numbers."""
+    """The values with all digits below ``step`` cut off toward zero, as the thesis writes its numbers; of their shape."""
     return np.trunc(np.asarray(values) / step * (1 + 1e-12)) * step
 
 

@@ -119,7 +119,7 @@ class ComparedRun(FrozenModel):
     """Outer radius of the annulus."""
 
     def departure(self, outcome: RunOutcome, form: ClosedForm) -> tuple[Array, Array]:
-        """Displacement over the outer radius, and force over that of the closed form minus one, at the accepted steps.
+        """Displacement over the outer radius, and force over that of the closed form minus one, (n,) at the accepted steps.
 
         Raises
         ------
