@@ -43,7 +43,7 @@ def shear_conditions(derivatives: Derivatives, stretches: Array) -> tuple[Array,
         d_k = (\lambda_i + \lambda_j)^2 \mu_k + 2 (\lambda_i^2 - \lambda_j^2)^2 H_k, \quad
         e_k = -(\lambda_i - \lambda_j)^2 \mu_k - 2 (\lambda_i^2 - \lambda_j^2)^2 H_k
 
-    All three are linear in W. ``stretches`` has shape (3, ...) and product 1.
+    All three are linear in W. ``stretches`` has shape (3, ...) and product 1. Source: as of `invariant_ellipticity_margin`.
     """
     W1, W2, W11, W12, W22 = derivatives
     b = stretches**2

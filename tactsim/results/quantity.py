@@ -66,7 +66,7 @@ class Quantity(NDArrayOperatorsMixin):
 
     @property
     def numbers(self) -> np.ndarray:
-        """The value as an array of floats of its shape, NaN where it has none."""
+        """The value as an array of floats of its own shape, NaN where there is none."""
         return np.asarray(self.value, dtype=float)
 
     @property

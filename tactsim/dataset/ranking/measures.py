@@ -148,7 +148,7 @@ def _with_misses(lumps: Sequence[JudgedEstimate], name: str, block_size: Array) 
 
 
 def binned(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, list[dict[str, Any]]]:
-    """For each label, the measures of lumps in parts of its range with equally many lumps; block (3,) in m."""
+    """For each label, the measures of lumps in parts of its range with equally many lumps; ``block_size`` (3,) in m."""
     lumps = [one for one in judged if one.truth.present]
     by_label: dict[str, list[dict[str, Any]]] = {}
     for label in LABELS:

@@ -51,7 +51,7 @@ class Examples:
     own_noise: Array
 
     def taken(self, chosen: Array) -> Examples:
-        """Some of them, by their numbers (m,)."""
+        """Some of them, by a mask (n,) or their numbers (m,)."""
         return Examples(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     @staticmethod

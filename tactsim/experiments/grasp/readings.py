@@ -51,7 +51,7 @@ def jaw_readings(model: GraspModel, state: ContactEquilibrium, layout: TaxelLayo
 def check_sums(reading: JawReading, rotation: Array, side: str, least: float) -> None:
     """Refuse a reading whose parts do not add up to the force on the jaw; ``least`` in N is a force that counts as none.
 
-    ``rotation`` (3, 3) has the axes of the jaw's frame as columns.
+    ``rotation`` (3, 3) turns the jaw's own axes into those of the tissue.
 
     Raises
     ------

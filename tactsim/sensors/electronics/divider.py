@@ -70,5 +70,7 @@ def divider_slope(conductance: Array, *, supply: float, load: float) -> Array:
     .. math:: \frac{dV_o}{dC} = \frac{V^+ R}{(1 + R C)^2}
 
     It has the shape of ``conductance`` in S; ``supply`` is in V, ``load`` in ohm.
+
+    Source: thesis, 2.2.1, differentiated.
     """
     return supply * load / (1 + load * np.asarray(conductance, dtype=float)) ** 2

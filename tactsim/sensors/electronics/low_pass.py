@@ -49,7 +49,7 @@ class LowPass(FrozenModel):
         return _run(sections, settled, samples, state)
 
     def unfiltered(self, filtered: Array, sampling_rate: float, state: Array | None = None) -> tuple[Array, Array]:
-        """Samples that the filter turned into ``filtered``, and the state after the last one; shapes and units as there.
+        """Samples that the filter turned into ``filtered``, and the state after the last one; shapes and units as in `filtered`.
 
         The inverse is exact but marginally stable, as the filter blocks half the sampling rate: an error that is added to
         ``filtered`` is amplified and does not decay. It therefore takes the filter's own output, not a rounded one.
