@@ -35,6 +35,11 @@ KEYS = {
     "tactsim/experiments/dma/report.py: told",
 }
 """Keys of files, which stay."""
+ARRAYS = re.compile(r"\b(?:Array|ArrayLike|ndarray)\b")
+TOKEN = r"(?:\d*[a-z_]+'?|[A-Z]+|\d+|\.\.\.|\*channels)"
+DIMENSION = rf"{TOKEN}(?:(?: [+*-] | ){TOKEN})*"
+SHAPES = re.compile(rf"\({DIMENSION}(?:,|(?:, {DIMENSION})+),?\)|\bshapes?\b|\bbroadcast|\bone (?:for each|per)\b")
+"""A shape in a docstring, such as ``(n, 3)`` or ``(size,)``, or that of another array, one value for each."""
 EMPTY_NAMES = {"utils", "util", "common", "misc", "helpers", "tools", "stuff"}
 
 
@@ -212,6 +217,20 @@ def named_errors(definition: Definition) -> set[str]:
     return {name for line in re.findall(r"^\w+(?:, \w+)*$", section, re.M) for name in line.split(", ")}
 
 
+def shapes_left_unsaid() -> list[str]:
+    """Public functions that take or return arrays and whose docstring gives no shape."""
+    return [
+        f.place
+        for f in functions(public=True)
+        if handles_arrays(f.node) and not overloaded(f.node) and not SHAPES.search(ast.get_docstring(f.node) or "")
+    ]
+
+
+def handles_arrays(function: Function) -> bool:
+    returned = ast.unparse(function.returns) if function.returns else ""
+    return any(ARRAYS.search(kind) for kind in (returned, *dict(annotations(function)).values()))
+
+
 def other_ends_of_runs() -> list[str]:
     """Modules that handle an interruption beside ``interfaces.run``, where every run ends, and the commands and sweeps above."""
     allowed = ("tactsim/interfaces/run.py", "tactsim/cli/", "tactsim/dataset/running/whole.py")
@@ -277,6 +296,7 @@ RULES: list[Callable[[], list[str]]] = [
     undocumented,
     silent_about_errors,
     errors_left_unsaid,
+    shapes_left_unsaid,
     other_ends_of_runs,
     empty_names,
     array_types,
@@ -300,6 +320,7 @@ BROKEN = {
     undocumented: '"""A module."""\ndef f(): ...',
     silent_about_errors: 'def f():\n    """F."""\n    raise ValueError',
     errors_left_unsaid: 'def f():\n    """F.\n\n    Raises\n    ------\n    CaseError\n    """\n    raise StorageError',
+    shapes_left_unsaid: 'def f(a: Array | None) -> None:\n    """A of b."""',
     other_ends_of_runs: "try:\n    a = 1\nexcept (ValueError, KeyboardInterrupt):\n    pass",
     array_types: "Array = np.ndarray",
     household_names: "found = 1",

@@ -94,10 +94,10 @@ def outcomes(
 
 
 def measures(judged: Sequence[JudgedEstimate], block_size: Array) -> dict[str, Any]:
-    """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score; of blocks (3,).
+    """Numbers in SI: rates, errors of lumps that were detected, coverage and sizes of the regions, and the score.
 
     Each is a mapping to ``value`` and to ``low`` and ``high``, the 95 % interval: of rates and the coverage Wilson's, of all else
-    by the bootstrap, over the specimens; None where no sample has any.
+    by the bootstrap, over the specimens; None where no sample has any. ``block_size`` (3,) is in m.
     """
     lumps = [one for one in judged if one.truth.present]
     plain = [one for one in judged if not one.truth.present]
@@ -127,10 +127,10 @@ def _size_of(one: JudgedEstimate, name: str) -> float | None:
 
 
 def penalty(one: JudgedEstimate, block_size: Array) -> float:
-    """Distance in m of the estimated from the true centre, at most half the block's (3,) plan and height together.
+    """Distance in m of the estimated from the true centre, at most half the block's plan and height together.
 
     That much is also counted for a lump that is missed and for an alarm without a lump, so that hiding does not pay; nothing is
-    counted for rightly finding nothing.
+    counted for rightly finding nothing. ``block_size`` (3,) is in m.
     """
     most = float(np.hypot(np.min(block_size[:2]) / 2, block_size[2] / 2))
     if one.lateral is not None and one.depth is not None:

@@ -210,7 +210,7 @@ def redrawn_point(seed: tuple[int, ...], number: int, attempt: int, dimensions: 
 
 
 def grid_point(sizes: tuple[int, ...], number: int) -> Array:
-    """Point (len(sizes),) in the middle of the cell of a number; the last place varies fastest."""
+    """Point (n,) in the middle of the cell of a number in a grid of n sizes; the last place varies fastest."""
     index = np.array(np.unravel_index(number, sizes) if sizes else (), dtype=float)
     return (index + 0.5) / np.array(sizes, dtype=float)
 
