@@ -55,7 +55,13 @@ class GeneralizedKelvin:
         return math.inf if self.fluidity else self.glassy_compliance + math.fsum(self.compliances)
 
     def creep(self, t: ArrayLike) -> Array:
-        """J(t) in 1/Pa at times ``t`` in s, of the shape of ``t``; 0 for t < 0."""
+        """J(t) in 1/Pa at times ``t`` in s, of the shape of ``t``; 0 for t < 0.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a time is NaN or not a real number.
+        """
         instants = checked_instants("t", t)
         after = np.maximum(instants, 0.0)
         units = -np.expm1(-after[..., None] / self.times) @ self.compliances
@@ -81,7 +87,13 @@ class GeneralizedKelvin:
         return self.glassy_compliance + units + flow
 
     def scaled(self, factor: float) -> GeneralizedKelvin:
-        """The model with all compliances and the fluidity multiplied by ``factor > 0``."""
+        """The model with all compliances and the fluidity multiplied by ``factor > 0``.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the factor is not finite and positive.
+        """
         factor = checked_number("factor", factor)
         return GeneralizedKelvin(
             factor * self.glassy_compliance, factor * self.compliances, self.times, fluidity=factor * self.fluidity

@@ -50,7 +50,13 @@ class GeneralizedMaxwell:
         return self.equilibrium_modulus + math.fsum(self.moduli)
 
     def relaxation(self, t: ArrayLike) -> Array:
-        """G(t) in Pa at times ``t`` in s, of the shape of ``t``; 0 for t < 0."""
+        """G(t) in Pa at times ``t`` in s, of the shape of ``t``; 0 for t < 0.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a time is NaN or not a real number.
+        """
         instants = checked_instants("t", t)
         units = np.exp(-np.maximum(instants, 0.0)[..., None] / self.times) @ self.moduli
         return np.where(instants < 0, 0.0, self.equilibrium_modulus + units)
@@ -70,6 +76,12 @@ class GeneralizedMaxwell:
         return self.equilibrium_modulus + (phase / (1 + phase)) @ self.moduli
 
     def scaled(self, factor: float) -> GeneralizedMaxwell:
-        """The model with all moduli multiplied by ``factor > 0``."""
+        """The model with all moduli multiplied by ``factor > 0``.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the factor is not finite and positive.
+        """
         factor = checked_number("factor", factor)
         return GeneralizedMaxwell(factor * self.equilibrium_modulus, factor * self.moduli, self.times)

@@ -151,7 +151,13 @@ class History:
         object.__setattr__(self, "pieces", Pieces.of(segments))
 
     def value(self, t: ArrayLike) -> Array:
-        """f(t) at times ``t`` in s, of the shape of ``t``; at a jump the value after it."""
+        """f(t) at times ``t`` in s, of the shape of ``t``; at a jump the value after it.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a time is NaN or not a real number.
+        """
         instants = checked_instants("t", t)
         piece, elapsed = self.located(instants)
         return np.where(instants < 0, 0.0, self.pieces.taken(piece).at(elapsed).reshape(instants.shape))
@@ -189,7 +195,13 @@ def step(value: float) -> History:
 
 
 def ramp(rate: float, duration: float) -> History:
-    """The history ``rate * t`` until ``duration`` in s, then held."""
+    """The history ``rate * t`` until ``duration`` in s, then held.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the duration is not finite and positive.
+    """
     duration = checked_number("duration", duration)
     return History((Segment(0.0, duration, 0.0, rate), Segment(duration, math.inf, rate * duration)))
 

@@ -48,7 +48,13 @@ def band_intensities(signals: Array, normalising: float, grey_levels: int = GREY
 
 
 def inserted_elements(elements: int, pixels: int) -> float:
-    """Number (N - n)/(n - 1) of pixels that come between two of n elements along N pixels; rarely whole (errata E12)."""
+    """Number (N - n)/(n - 1) of pixels that come between two of n elements along N pixels; rarely whole (errata E12).
+
+    Raises
+    ------
+    InvalidQuantity
+        If there are fewer than two elements or no pixel, or a number is not whole.
+    """
     check_count("elements", elements, least=2)
     check_count("pixels", pixels)
     return (pixels - elements) / (elements - 1)
@@ -60,6 +66,11 @@ def element_positions(elements: int, pixels: int) -> Array:
     .. math:: i_j = 1 + (j - 1) \frac{N - 1}{n - 1}
 
     A single element stands in the middle. Source: thesis, eq. .1.3, whose :math:`((j-1) N + n - j) / (n - 1)` is the same.
+
+    Raises
+    ------
+    InvalidQuantity
+        If there is no element or no pixel, or a number is not whole.
     """
     check_count("elements", elements)
     check_count("pixels", pixels)

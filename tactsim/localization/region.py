@@ -53,7 +53,13 @@ class CellRegion(Region):
         return np.array([float(axis[1] - axis[0]) for axis in self.axes])
 
     def inside(self, probability: float = LEVEL) -> Array:
-        """Which cells (nx, ny, nz) belong to the region: the likeliest that reach the probability together."""
+        """Which cells (nx, ny, nz) belong to the region: the likeliest that reach the probability together.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the probability is not between 0 and 1.
+        """
         check_probability(probability)
         flat = self.weights.ravel()
         order = np.argsort(-flat, kind="stable")

@@ -33,6 +33,11 @@ def lump_rows(upper: Array, lower: Array, rows: int, form: Form = "corrected") -
 
     (errata E13 and E25), from 1 to M, and the middle (M + 1)/2 without signal. ``as_printed`` is eq. .2.3,
     :math:`r = M G_U / (G_L + G_U)`, from 0 to M, and M/2 without signal.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the rows are not a whole number from 1 on.
     """
     check_count("rows of the picture", rows)
     share = depth_share(upper, lower, form)

@@ -139,6 +139,11 @@ def volume(readings: Array, shape: tuple[int, int, int]) -> Array:
     Depth 0 is the upper jaw, y 0 the front, x 0 column 1. Readings (jaw, row, column) are interpolated linearly over each jaw
     (corrected eq. .1.4 along both directions); between the jaws runs the corrected eq. .2.7. The thesis builds its image in
     space from the three views by hand (Fig. 6.8); this is the same algorithm where it has both lateral places at once.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the readings have a wrong shape or are not finite, or a number of the shape is not whole and positive.
     """
     forces = np.maximum(checked_readings(readings), 0.0)
     depth, back, across = shape

@@ -111,7 +111,13 @@ def morphed_block(size: Sequence[float], inclusion: Inclusion, settings: BlockMe
 
 
 def outer_steps(distance: float, cell: float, settings: BlockMeshSettings) -> Array:
-    """Ascending fractions (n,) of the distance in m from lump to faces at which layers end; cells grow to the wanted size."""
+    """Ascending fractions (n,) of the distance in m from lump to faces at which layers end; cells grow to the wanted size.
+
+    Raises
+    ------
+    InputError
+        If the cells are too many.
+    """
     steps = [cell]
     while sum(steps) < distance:
         steps.append(min(settings.size, steps[-1] * (1 + settings.growth)))

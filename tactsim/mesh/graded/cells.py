@@ -79,6 +79,11 @@ def layer_ends(wall: Array, box: Array, settings: BlockMeshSettings, fewer: int 
 
     There are `LEAST_LAYERS`, and more where cells that grow from the size at inclusions to that of the block find room for them;
     less those that are to be ``fewer``.
+
+    Raises
+    ------
+    InputError
+        If the cells are too many.
     """
     distance = float(np.linalg.norm(box - wall, axis=-1).mean())
     steps = [settings.inclusion_size]

@@ -69,6 +69,11 @@ def lines_around(ball: BallImage, bounds: Array, extent: Array, settings: BlockM
     """For each axis: places graded from a face to the box, through the box to its middle, and on to the other face.
 
     ``bounds`` (2, 3) in m are those of the lump; ``finer`` counts how often cells across the box were added.
+
+    Raises
+    ------
+    InputError
+        If the cells are too many.
     """
     lines = []
     check_along(np.pi / 2 * ball.longest / settings.inclusion_size, f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
@@ -133,7 +138,13 @@ def edge_thickness(settings: BlockMeshSettings) -> float:
 
 def spaced(length: float, settings: BlockMeshSettings) -> Array:
     """Ascending places (n,) in m from a face at 0 to ``length``: the first cell ``edge_size`` thick, the others stretched to fit;
-    or one cell, if most of a second one would not find room."""
+    or one cell, if most of a second one would not find room.
+
+    Raises
+    ------
+    InputError
+        If the cells are too many.
+    """
     if length <= 0:
         return np.zeros(1)
     thickness = [edge_thickness(settings)]

@@ -93,7 +93,13 @@ class Film(SensorFilm):
         return self.advance(None, time, force)[0]
 
     def advance(self, state: FilmState | None, time: ArrayLike, force: ArrayLike) -> tuple[Array, FilmState]:
-        """Conductance (n, ...) in S under forces (n, ...) in N at times (n,) in s, and the state after; None is one at rest."""
+        """Conductance (n, ...) in S under forces (n, ...) in N at times (n,) in s, and the state after; None is one at rest.
+
+        Raises
+        ------
+        InvalidQuantity
+            If times do not increase, or a force is negative, above 100 N, not finite or would strain the film by 1 or more.
+        """
         times = checked_times(time, after=None if state is None else state.time)
         forces = checked_forces(force, len(times), HOLM)
         strains = self._delayed_strains(state, times, forces)
@@ -101,13 +107,25 @@ class Film(SensorFilm):
         return self._conductance(forces, strains), FilmState(float(times[-1]), forces[-1], strains[-1])
 
     def strain(self, time: ArrayLike, force: ArrayLike) -> Array:
-        """Compressive strain, of the shape of ``force``; the arguments are those of ``conductance``."""
+        """Compressive strain, of the shape of ``force``; the arguments are those of ``conductance``.
+
+        Raises
+        ------
+        InvalidQuantity
+            If times do not increase, or a force is negative, above 100 N or not finite.
+        """
         times = checked_times(time)
         forces = checked_forces(force, len(times), HOLM)
         return self._strain(forces, self._delayed_strains(None, times, forces))
 
     def sensitivity(self, time: ArrayLike, force: ArrayLike) -> Array:
-        """Immediate change of the conductance with the force in S/N, of the shape of ``force``; infinite without force."""
+        """Immediate change of the conductance with the force in S/N, of the shape of ``force``; infinite without force.
+
+        Raises
+        ------
+        InvalidQuantity
+            If times do not increase, or a force is negative, above 100 N or not finite.
+        """
         times = checked_times(time)
         forces = checked_forces(force, len(times), HOLM)
         delayed = self._delayed_strains(None, times, forces)
