@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from contextvars import ContextVar
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -64,14 +65,26 @@ COMPILATION = Compilation()
 """That of this process, whose loops numba keeps compiled until it ends."""
 
 
+@dataclass(frozen=True)
+class Extent:
+    """How far a run goes: the history value that grows during it, by its name, and its last value in SI."""
+
+    name: str
+    end: float
+
+    def share(self, record: StepRecord) -> float:
+        """The part of it that a step has reached, 0 at the start; beyond 1 if the step went farther."""
+        return max(0.0, record.values.get(self.name, 0.0) / self.end)
+
+
 @contextmanager
-def step_bar(name: str, extent: tuple[str, float] | None) -> Iterator[Callable[[StepRecord], None] | None]:
+def step_bar(name: str, extent: Extent | None) -> Iterator[Callable[[StepRecord], None] | None]:
     """What is called with every accepted step; None where nobody watches.
 
     Parameters
     ----------
     name : of what runs
-    extent : the history value that grows, and its last value; None if the end is not known
+    extent : how far it goes; None if the end is not known
     """
     if not is_watched():
         yield None
@@ -89,7 +102,7 @@ def step_bar(name: str, extent: tuple[str, float] | None) -> Iterator[Callable[[
             if extent is None:
                 bar.update()
             else:
-                bar.update(max(0.0, 100 * min(1.0, record.values.get(extent[0], 0.0) / extent[1]) - bar.n))
+                bar.update(max(0.0, 100 * min(1.0, extent.share(record)) - bar.n))
 
         yield advance
 

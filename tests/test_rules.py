@@ -159,6 +159,37 @@ def packed_arguments() -> list[str]:
     return [f"{f.place}: {name}" for f in functions() for name, kind in annotations(f.node) if packed.match(kind)]
 
 
+def unlike_tuples() -> list[str]:
+    """Arguments that are tuples of unlike things, which are unpacked by their places: a dataclass names them."""
+    return [
+        f"{f.place}: {argument.arg}"
+        for f in functions()
+        for argument in (*f.node.args.posonlyargs, *f.node.args.args, *f.node.args.kwonlyargs)
+        if argument.annotation is not None and any(len(kinds) > 1 for kinds in kinds_in_tuples(argument.annotation))
+    ]
+
+
+def kinds_in_tuples(annotation: ast.expr) -> list[set[str]]:
+    """The kinds of entries of a tuple that an argument may be; an entry that may be missing is of the same kind."""
+    if isinstance(annotation, ast.BinOp):
+        return kinds_in_tuples(annotation.left) + kinds_in_tuples(annotation.right)
+    if not isinstance(annotation, ast.Subscript) or ast.unparse(annotation.value) != "tuple":
+        return []
+    entries = annotation.slice.elts if isinstance(annotation.slice, ast.Tuple) else [annotation.slice]
+    return [{kind for entry in entries for kind in [kind_of(entry)] if kind != "..."}]
+
+
+def kind_of(entry: ast.expr) -> str:
+    """What an entry is: itself without the limits of ``Annotated``, of a choice the kind of its first value."""
+    if isinstance(entry, ast.BinOp):
+        return kind_of(entry.left)
+    if isinstance(entry, ast.Subscript) and ast.unparse(entry.value) in ("Annotated", "Literal"):
+        first = entry.slice.elts[0] if isinstance(entry.slice, ast.Tuple) else entry.slice
+        kind = type(first.value).__name__ if isinstance(first, ast.Constant) else ast.unparse(first)
+        return "float" if kind == "int" else kind
+    return "..." if isinstance(entry, ast.Constant) and entry.value is ... else ast.unparse(entry)
+
+
 def untyped_arguments() -> list[str]:
     return [
         f"{f.place}: {name}"
@@ -291,6 +322,7 @@ RULES: list[Callable[[], list[str]]] = [
     long_functions,
     wide_functions,
     packed_arguments,
+    unlike_tuples,
     untyped_arguments,
     large_classes,
     undocumented,
@@ -315,6 +347,7 @@ BROKEN = {
     long_functions: "def f():\n" + "    a = 1\n" * 41,
     wide_functions: "def f(a, b, c, d, e, g): ...",
     packed_arguments: "def f(forces: tuple[Any, ...]): ...",
+    unlike_tuples: "def f(run: tuple[str, float] | None, ends: tuple[float, float | None], corner: tuple[int, ...]): ...",
     untyped_arguments: "def f(a): ...",
     large_classes: "class A:\n" + "".join(f"    def m{k}(self): ...\n" for k in range(11)),
     undocumented: '"""A module."""\ndef f(): ...',

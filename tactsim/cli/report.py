@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.outside.text import one_line
+from tactsim.progress import Extent
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.quantity import ROUND_OFF, format_values
 from tactsim.units import format_quantity
@@ -101,19 +102,19 @@ VALUES_IN_A_LINE = 4
 """How many history values a progress line shows."""
 
 
-def step_line(record: StepRecord, units: Mapping[str, str], extent: tuple[str, float] | None = None, elapsed: float = 0.0) -> str:
+def step_line(record: StepRecord, units: Mapping[str, str], extent: Extent | None = None, elapsed: float = 0.0) -> str:
     """One line per accepted step: the first values that the units name, of which the rest stand in ``history.csv``, and what
     Newton's method took, if the step is one of its solutions.
 
     Parameters
     ----------
     record, units : the step, and the unit of each of its values
-    extent : the value that grows during the run and its last value, of which the step has reached so many per cent
+    extent : how far the run goes, of which the step has reached so many per cent
     elapsed : time in s since the run began, without compiling; from a second on the time left is given, as if all took as long
     """
     shown = [name for name in units if name in record.values][:VALUES_IN_A_LINE] or list(record.values)
     values = [f"{name} {format_quantity(_without_round_off(name, record.values), units.get(name, ''))}" for name in shown]
-    share = max(0.0, record.values.get(extent[0], 0.0) / extent[1]) if extent else 0.0
+    share = extent.share(record) if extent else 0.0
     reached = f" {share:4.0%}" if extent else ""
     solved = record.newton_iterations > 0 or record.residual > 0
     effort = [f"{record.newton_iterations} iterations, residual {record.residual:.1e}"] if solved else []

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,7 +11,7 @@ from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.materials.homogeneous import principal_invariants
 from tactsim.materials.invariant_polynomial import monomial_derivative, powers_of
-from tactsim.materials.stability import PAIRS, shear_conditions
+from tactsim.materials.stability import PAIRS, EnergyDerivatives, shear_conditions
 from tactsim.materials.stability_range import SCANNED
 
 SMALLEST_SHEAR_FRACTION = 0.1
@@ -145,17 +144,20 @@ def ellipticity_rows(names: tuple[str, ...]) -> Array:
     states = np.stack([first, second, 1 / (first * second)])
     states = states[:, (first <= second) & (second <= states[2]) & (states[2] <= SCANNED[1])]
     invariants, unit = principal_invariants(states), np.ones(states.shape[1])
-    neo_hookean = _conditions((unit, 0 * unit, 0 * unit, 0 * unit, 0 * unit), states)
+    neo_hookean = _conditions(EnergyDerivatives(unit, *(0 * unit,) * 4), states)
     rows = []
     for power in powers_of(dict.fromkeys(names, 1.0)):
         derivatives = [monomial_derivative(*invariants, power, order) for order in ((1, 0), (0, 1), (2, 0), (1, 1), (0, 2))]
-        rows.append(_conditions(derivatives, states) - (SMALLEST_SHEAR_FRACTION if sum(power) == 1 else 0.0) * neo_hookean)
+        rows.append(
+            _conditions(EnergyDerivatives(*derivatives), states)
+            - (SMALLEST_SHEAR_FRACTION if sum(power) == 1 else 0.0) * neo_hookean
+        )
     matrix = np.stack(rows, axis=-1)
     return matrix / np.abs(matrix).max(axis=1, keepdims=True)
 
 
-def _conditions(derivatives: Sequence[Array], states: Array) -> Array:
+def _conditions(energy: EnergyDerivatives, states: Array) -> Array:
     """Every mu_k, every d_k, and the tangents of the third set, at states (3, n), flat."""
-    shear, opposite, equal = shear_conditions((*derivatives,), states)  # type: ignore[arg-type]
+    shear, opposite, equal = shear_conditions(energy, states)
     tangents = [(1 + t) * opposite[i] + (1 + 1 / t) * opposite[j] + equal[k] for i, j, k in PAIRS for t in TANGENTS]
     return np.concatenate([shear.ravel(), opposite.ravel(), *tangents])

@@ -10,7 +10,7 @@ import time
 from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any, Literal, Self, TypeVar, final
 
 from tactsim.deadline import TOO_LONG, allowed_seconds, check_time, time_limit
@@ -19,7 +19,7 @@ from tactsim.interfaces.history_units import KindWithHistory
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
 from tactsim.presenter import presenter
-from tactsim.progress import COMPILATION, quiet, step_bar
+from tactsim.progress import COMPILATION, Extent, quiet, step_bar
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import FieldFrame, Result, Status, StepRecord
 from tactsim.results.scene import Scene
@@ -51,6 +51,10 @@ class Findings:
     units: Mapping[str, str] | None = None
     """Units of the history's values where they are not the ``history_units`` of the kind."""
 
+    def ended(self, status: Status, reason: str) -> Self:
+        """The same of a run that ended otherwise."""
+        return replace(self, status=status, reason=reason)
+
 
 @dataclass(frozen=True)
 class Course:
@@ -81,8 +85,8 @@ class Runnable(KindWithHistory):
     """What can be run: what is the same for every kind of `Experiment`."""
 
     @property
-    def extent(self) -> tuple[str, float] | None:
-        """The history value that grows during a run and its last value, in SI; None if the end is not known beforehand."""
+    def extent(self) -> Extent | None:
+        """How far a run goes; None if the end is not known beforehand."""
         return None
 
     def doubts(self) -> list[str]:
@@ -159,7 +163,7 @@ class Runnable(KindWithHistory):
         InputError
             As `unloaded`.
         """
-        return _result(self, self.unloaded(), (Status.INTERRUPTED, "at rest; nothing is computed"), {})
+        return _result(self, self.unloaded().ended(Status.INTERRUPTED, "at rest; nothing is computed"), {})
 
     @final
     def run(self, progress: Progress | Literal["bar"] | None = "bar", *, time_limit: float | str | None = None) -> Result:
@@ -202,11 +206,11 @@ def run_experiment(experiment: Runnable, progress: Progress | None, seconds: flo
             course = _course(experiment)
             setup = time.perf_counter() - started
             early = _ended_early(course, progress)
-        findings = course.findings()
+        findings = course.findings() if early is None else course.findings().ended(*early)
     except MemoryError as error:
         raise OutOfMemory(NO_MEMORY) from error
     timing = dict(findings.timing) | ({"setup": setup} if course.setup_is_timed else {})
-    return _result(experiment, findings, early, timing | {"total": time.perf_counter() - started})
+    return _result(experiment, findings, timing | {"total": time.perf_counter() - started})
 
 
 def _course(experiment: Runnable) -> Course:
@@ -237,12 +241,11 @@ def failure(error: Unfinished) -> str:
     return f"stopped converging: {error}" if isinstance(error, ConvergenceError | Collapsed) else str(error)
 
 
-def _result(experiment: Runnable, findings: Findings, early: tuple[Status, str] | None, timing: Mapping[str, float]) -> Result:
-    status, reason = early or (findings.status, findings.reason)
+def _result(experiment: Runnable, findings: Findings, timing: Mapping[str, float]) -> Result:
     return Result(
         kind=experiment.kind,
-        status=status,
-        reason=reason,
+        status=findings.status,
+        reason=findings.reason,
         quantities=findings.quantities,
         assumptions=tuple(findings.assumptions),
         warnings=(*experiment.doubts(), *findings.warnings),
@@ -266,14 +269,14 @@ def run_within_another(experiment: Runnable) -> Generator[StepRecord, None, Resu
         If the time allowed has passed, or the memory does not suffice.
     """
     try:
-        course, early = _course(experiment), None
+        course = _course(experiment)
         try:
             yield from course.steps
         except (OutOfTime, OutOfMemory):
             raise
         except Unfinished as error:
-            early = Status.FAILED, failure(error)
-        return _result(experiment, course.findings(), early, {})
+            return _result(experiment, course.findings().ended(Status.FAILED, failure(error)), {})
+        return _result(experiment, course.findings(), {})
     except MemoryError as error:
         raise OutOfMemory(NO_MEMORY) from error
 

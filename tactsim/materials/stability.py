@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+from typing import Self
+
 import numpy as np
 
 from tactsim.array import Array
@@ -20,11 +23,24 @@ from tactsim.materials.sampled_stability import (
 PAIRS = ((1, 2, 0), (2, 0, 1), (0, 1, 2))
 """Principal directions i, j and the third one, k."""
 
-Derivatives = tuple[Array, Array, Array, Array, Array]
-"""W1, W2, W11, W12, W22 in Pa."""
+
+@dataclass(frozen=True)
+class EnergyDerivatives:
+    """First and second derivatives in Pa of an energy W(I1, I2), each of the shape of the invariants."""
+
+    W1: Array
+    W2: Array
+    W11: Array
+    W12: Array
+    W22: Array
+
+    @classmethod
+    def of(cls, material: Hyperelastic, I1: Array, I2: Array) -> Self:
+        """Those of a material at invariants of shape (...)."""
+        return cls(*material.energy_gradient(I1, I2), *material.energy_hessian(I1, I2))
 
 
-def shear_conditions(derivatives: Derivatives, stretches: Array) -> tuple[Array, Array, Array]:
+def shear_conditions(energy: EnergyDerivatives, stretches: Array) -> tuple[Array, Array, Array]:
     r"""Shear moduli mu_k, and the terms d_k and e_k of the conditions of strong ellipticity, in Pa, each of shape (3, ...).
 
     For unit ``n`` normal to ``m``, the energy along ``(I + s m n^T) F`` has the second derivative
@@ -45,12 +61,11 @@ def shear_conditions(derivatives: Derivatives, stretches: Array) -> tuple[Array,
 
     All three are linear in W. ``stretches`` has shape (3, ...) and product 1. Source: as of `invariant_ellipticity_margin`.
     """
-    W1, W2, W11, W12, W22 = derivatives
     b = stretches**2
     shear, opposite, equal = [], [], []
     for i, j, k in PAIRS:
-        g = W1 + b[k] * W2
-        curvature = 2 * (b[i] - b[j]) ** 2 * (W11 + 2 * b[k] * W12 + b[k] ** 2 * W22)
+        g = energy.W1 + b[k] * energy.W2
+        curvature = 2 * (b[i] - b[j]) ** 2 * (energy.W11 + 2 * b[k] * energy.W12 + b[k] ** 2 * energy.W22)
         shear.append(g)
         opposite.append((stretches[i] + stretches[j]) ** 2 * g + curvature)
         equal.append(-((stretches[i] - stretches[j]) ** 2) * g - curvature)
@@ -81,8 +96,7 @@ def invariant_ellipticity_margin(material: Hyperelastic, stretches: Array) -> Ar
     Source: the conditions of Zee & Sternberg 1983, doi:10.1007/BF00281838, derived here from W(I1, I2).
     """
     invariants = principal_invariants(stretches)
-    derivatives = (*material.energy_gradient(*invariants), *material.energy_hessian(*invariants))
-    g, d, e = shear_conditions(derivatives, stretches)
+    g, d, e = shear_conditions(EnergyDerivatives.of(material, *invariants), stretches)
     root = np.sqrt(np.maximum(d, 0))
     third = [(root[i] + root[j]) ** 2 + e[k] for i, j, k in PAIRS]
     return np.minimum(np.minimum(g.min(axis=0), d.min(axis=0)), np.min(third, axis=0))

@@ -7,7 +7,7 @@ import math
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from time import monotonic
 
@@ -24,11 +24,18 @@ from tactsim.validation.solver_identity import solver_identity
 from tactsim.validation.study import RunOutcome, Study
 
 MODULE = "tactsim.validation.execution"
-Task = tuple[str, str, tuple[str, ...]]
-"""Name of the run, path of the case file and the overrides."""
 Studies = dict[str, tuple[RunOutcome, ...]]
 """Outcomes of the studies of a table by name."""
 Progress = Callable[[str], None]
+
+
+@dataclass(frozen=True)
+class Task:
+    """A simulation to run: its name, the path of its case file, and the overrides."""
+
+    name: str
+    path: str
+    overrides: tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -56,12 +63,12 @@ class StudyRunner:
             If a process met a defect of this program.
         """
         tasks = {
-            (table, study.name, run.id): (f"{study.name}, {run.id}", str(folder / study.case), study.overrides(run))
+            (table, study.name, run.id): Task(f"{study.name}, {run.id}", str(folder / study.case), study.overrides(run))
             for table, studies in tables.items()
             for study in studies
             for run in study.runs
         }
-        identities = {key: load_case(path, overrides).case_id for key, (_, path, overrides) in tasks.items()}
+        identities = {key: load_case(task.path, task.overrides).case_id for key, task in tasks.items()}
         outcomes: dict[str, RunOutcome] = {}
         if not self.fresh:
             stored = {case_id: self._stored(case_id) for case_id in set(identities.values())}
@@ -87,7 +94,7 @@ class StudyRunner:
         progress(f"{len(waiting)} simulations in {min(self.workers, len(waiting))} processes")
         with closing(WorkerPool[str](MODULE, (), self.workers)) as pool:
             for case_id, task in waiting.items():
-                pool.submit(case_id, json.dumps(task).encode())
+                pool.submit(case_id, json.dumps(asdict(task)).encode())
             count, begun = 0, monotonic()
             while count < len(waiting):
                 for answer in pool.wait():
@@ -144,17 +151,16 @@ def simulated(task: Task) -> RunOutcome:
     StorageError
         If its file cannot be read.
     """
-    name, path, overrides = task
-    case = load_case(path, overrides)
+    case = load_case(task.path, task.overrides)
     try:
         result = case.experiment.run(None)
     except TactsimError as error:
         return RunOutcome(
-            id=name, case_id=case.case_id, status="failed", reason=str(error), quantities={}, history={}, seconds=0.0
+            id=task.name, case_id=case.case_id, status="failed", reason=str(error), quantities={}, history={}, seconds=0.0
         )
     scalars = {key: quantity.value for key, quantity in result.quantities.items() if isinstance(quantity.value, int | float)}
     return RunOutcome(
-        id=name,
+        id=task.name,
         case_id=case.case_id,
         status=str(result.status),
         reason=result.reason,
@@ -175,8 +181,7 @@ def main(descriptor: str) -> None:
 
 
 def _outcome(task: bytes) -> bytes:
-    name, path, overrides = json.loads(task)
-    return simulated((name, path, tuple(overrides))).model_dump_json().encode()
+    return simulated(Task(**json.loads(task))).model_dump_json().encode()
 
 
 if __name__ == "__main__":

@@ -15,7 +15,7 @@ from thesis_tables import CASES, shipped_names, shipped_tables
 from tactsim.validation import compare
 from tactsim.validation.comparison import FIGURE, reason_of
 from tactsim.validation.endings import label_of
-from tactsim.validation.execution import simulated
+from tactsim.validation.execution import Task, simulated
 from tactsim.validation.pictures import placed_pictures
 from tactsim.validation.report import row_values
 from tactsim.validation.table import Row
@@ -85,7 +85,7 @@ def test_kept_rows_are_what_is_computed(group: str, name: str) -> None:
     loaded = shipped_tables(group)
     table = loaded.tables[name]
     studies = {
-        study.name: tuple(simulated((run.id, str(loaded.folder / study.case), study.overrides(run))) for run in study.runs)
+        study.name: tuple(simulated(Task(run.id, str(loaded.folder / study.case), study.overrides(run))) for run in study.runs)
         for study in table.studies
     }
     outcome = compare(name, table, loaded.folder, studies)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -26,6 +27,14 @@ SPREAD, TAXELS = "spread.png", "taxels.png"
 FIGURE_FILES = (SPREAD, TAXELS)
 
 
+@dataclass(frozen=True)
+class Spread:
+    """Values (n,) of a number in the samples, and their unit."""
+
+    values: Array
+    unit: str
+
+
 def card_figures(store: str | Path) -> dict[str, Plot]:
     """File name -> drawing; empty for a data set without a sample that is done, or in which nothing differs.
 
@@ -46,13 +55,13 @@ def card_figures(store: str | Path) -> dict[str, Plot]:
     return drawings
 
 
-def spread(numbers: dict[str, tuple[Array, str]], title: str) -> Figure:
-    """Histogram of each of these values (n,), with their units."""
+def spread(numbers: dict[str, Spread], title: str) -> Figure:
+    """Histogram of each of these numbers."""
     names = list(numbers)[:MOST_PANELS]
     rows = -(-len(names) // COLUMNS)
     with titled_figure(2.3 * COLUMNS, 1.7 * rows + TITLE, title, title_size=TITLE_SIZE) as figure:
         for number, name in enumerate(names, 1):
-            values, unit = numbers[name]
+            values, unit = numbers[name].values, numbers[name].unit
             axis = figure.add_subplot(rows, COLUMNS, number)
             factor, shown = scale_of(float(np.abs(values).max(initial=0.0)), unit) if unit != "1" else (1.0, "")
             axis.hist(factor * values, bins=20, color="0.45")
@@ -85,7 +94,7 @@ def taxels(force: Array, title: str) -> Figure:
     return figure
 
 
-def _numbers(data: xarray.Dataset) -> dict[str, tuple[Array, str]]:
+def _numbers(data: xarray.Dataset) -> dict[str, Spread]:
     """Labels, then readings of one number, finite values only."""
     numbers = {}
     for role in ("label", "reading"):
@@ -98,5 +107,5 @@ def _numbers(data: xarray.Dataset) -> dict[str, tuple[Array, str]]:
             for part, components in parts.items():
                 finite = components[np.isfinite(components)]
                 if finite.size and np.ptp(finite) > 0:
-                    numbers[part] = finite, str(values.attrs["units"])
+                    numbers[part] = Spread(finite, str(values.attrs["units"]))
     return numbers

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from textwrap import wrap
 from typing import Any
 
@@ -21,28 +22,39 @@ SCORE = (
     "height together; a missed lump and a false alarm count that much."
 )
 BASELINE = "thesis"
-COLUMNS: tuple[tuple[str, tuple[str, ...], str], ...] = (
-    ("score [mm]", ("score",), "m"),
-    ("detected", ("detection_rate",), "1"),
-    ("false alarms", ("false_alarm_rate",), "1"),
-    ("lateral error, median [mm]", ("lateral_error", "median"), "m"),
-    ("90 % quantile [mm]", ("lateral_error", "quantile_90"), "m"),
-    ("depth error, median [mm]", ("depth_error", "median"), "m"),
-    ("90 % quantile [mm]", ("depth_error", "quantile_90"), "m"),
-    ("radius error, median [mm]", ("radius_error", "median"), "m"),
-    ("coverage of 90 % regions", ("coverage",), "1"),
-    ("their width, median [mm]", ("region_width",), "m"),
-    ("their height, median [mm]", ("region_height",), "m"),
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of a table of measures: its heading, the keys that lead to the measure, and its unit; lengths are shown in mm."""
+
+    heading: str
+    place: tuple[str, ...]
+    unit: str
+
+
+COLUMNS = (
+    Column("score [mm]", ("score",), "m"),
+    Column("detected", ("detection_rate",), "1"),
+    Column("false alarms", ("false_alarm_rate",), "1"),
+    Column("lateral error, median [mm]", ("lateral_error", "median"), "m"),
+    Column("90 % quantile [mm]", ("lateral_error", "quantile_90"), "m"),
+    Column("depth error, median [mm]", ("depth_error", "median"), "m"),
+    Column("90 % quantile [mm]", ("depth_error", "quantile_90"), "m"),
+    Column("radius error, median [mm]", ("radius_error", "median"), "m"),
+    Column("coverage of 90 % regions", ("coverage",), "1"),
+    Column("their width, median [mm]", ("region_width",), "m"),
+    Column("their height, median [mm]", ("region_height",), "m"),
 )
-"""Heading, place in the measures, unit; lengths are shown in mm."""
-BRIEF: tuple[tuple[str, tuple[str, ...], str], ...] = (
-    ("score", ("score",), "m"),
-    ("found", ("detection_rate",), "1"),
-    ("alarms", ("false_alarm_rate",), "1"),
-    ("lateral", ("lateral_error", "median"), "m"),
-    ("depth", ("depth_error", "median"), "m"),
-    ("radius", ("radius_error", "median"), "m"),
-    ("coverage", ("coverage",), "1"),
+"""Of the whole report."""
+BRIEF = (
+    Column("score", ("score",), "m"),
+    Column("found", ("detection_rate",), "1"),
+    Column("alarms", ("false_alarm_rate",), "1"),
+    Column("lateral", ("lateral_error", "median"), "m"),
+    Column("depth", ("depth_error", "median"), "m"),
+    Column("radius", ("radius_error", "median"), "m"),
+    Column("coverage", ("coverage",), "1"),
 )
 """The same of the columns that fit a terminal."""
 BRIEFLY = (
@@ -147,9 +159,9 @@ def as_summary(ranked: Sequence[Ranked], samples: JudgedSamples, seen: int = 0) 
     """
     lumps = sum(truth.present for truth in samples.truths)
     counts = f"{_counted(samples)}, {lumps} with a lump; readings {samples.source}, noise of a reading {_noise_words(samples)}"
-    rows = [["estimator", *(heading for heading, _, _ in BRIEF)]]
+    rows = [["estimator", *(column.heading for column in BRIEF)]]
     for one in ranked:
-        rows.append([one.name, *(_cell(one.measures, place, unit).partition(" ")[0] for _, place, unit in BRIEF)])
+        rows.append([one.name, *(_cell(one.measures, column).partition(" ")[0] for column in BRIEF)])
     ratios = [f"{name}: median errors over those of {BASELINE}: {_ratios(one)}" for name, one in against_baseline(ranked).items()]
     words = [line for given in (BRIEFLY, *ratios, seen_words(seen, samples)) for line in wrap(given, SCREEN)]
     return "\n".join([*wrap(counts, SCREEN), "", *aligned(rows), "", *words])
@@ -169,20 +181,19 @@ def _of_one(one: Ranked) -> list[str]:
     return lines
 
 
-def _table(
-    first: str, rows: Sequence[tuple[str, Mapping[str, Any]]], columns: Sequence[tuple[str, tuple[str, ...], str]]
-) -> list[str]:
-    cells = ([name, *(_cell(measures, place, unit) for _, place, unit in columns)] for name, measures in rows)
-    return markdown_table([first, *(heading for heading, _, _ in columns)], cells)
+def _table(first: str, rows: Sequence[tuple[str, Mapping[str, Any]]], columns: Sequence[Column]) -> list[str]:
+    """The named ``rows`` of measures."""
+    cells = ([name, *(_cell(measures, column) for column in columns)] for name, measures in rows)
+    return markdown_table([first, *(column.heading for column in columns)], cells)
 
 
-def _cell(measures: Mapping[str, Any], place: Sequence[str], unit: str) -> str:
+def _cell(measures: Mapping[str, Any], column: Column) -> str:
     entry: Any = measures
-    for key in place:
+    for key in column.place:
         entry = None if entry is None else entry[key]
     if entry is None:
         return "-"
-    value, low, high = (_shown(entry[name], unit) for name in ("value", "low", "high"))
+    value, low, high = (_shown(entry[name], column.unit) for name in ("value", "low", "high"))
     return f"{value} [{low}, {high}]"
 
 

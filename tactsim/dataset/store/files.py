@@ -114,27 +114,26 @@ def foreign_files(folder: Path, described: Mapping[str, ArrayDescription], array
         If a link stands in the folder.
     """
     known = {META, OWN_LIST, JOURNAL, CARD, *OwnFiles(folder).sums(), *(f"{name}/{META}" for name in arrays)}
-    chunks = {name: (array, -(-array.shape[0] // array.chunks[0])) for name, array in described.items()}
     names, listed = set(arrays), os.path.lexists(folder / OWN_LIST)
     return sorted(
         name
         for name in walked(folder)
         if name not in known
         and name.rpartition("/")[2] not in IGNORED
-        and not _is_chunk(name, chunks, names)
+        and not _is_chunk(name, described, names)
         and not (EARLIER.fullmatch(name) and not listed)
         and not is_torn(name, names)
     )
 
 
-def _is_chunk(name: str, chunks: Mapping[str, tuple[ArrayDescription, int]], arrays: set[str]) -> bool:
+def _is_chunk(name: str, described: Mapping[str, ArrayDescription], arrays: set[str]) -> bool:
     parts = name.split("/")
     if len(parts) < 3 or parts[0] not in arrays or parts[1] != "c" or not all(part.isdecimal() for part in parts[2:]):
         return False
-    if parts[0] not in chunks:
+    if parts[0] not in described:
         return True  # of an array whose description is gone
-    array, count = chunks[parts[0]]
-    return int(parts[2]) < count and name == array.chunk_key(int(parts[2]))
+    array = described[parts[0]]
+    return int(parts[2]) * array.chunks[0] < array.shape[0] and name == array.chunk_key(int(parts[2]))
 
 
 class GuardedFiles(LocalStore):

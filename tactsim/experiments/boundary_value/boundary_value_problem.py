@@ -13,6 +13,7 @@ from tactsim.experiments.boundary_value.setup import RECORDED, BoundaryValueSetu
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
+from tactsim.progress import Extent
 
 
 def _history_units(problem: BoundaryValueProblem) -> dict[str, str]:
@@ -92,6 +93,6 @@ class BoundaryValueProblem(BoundaryValueSetup, Experiment):
         ]
 
     @property
-    def extent(self) -> tuple[str, float]:
+    def extent(self) -> Extent:
         """The time."""
-        return "time", self.duration
+        return Extent("time", self.duration)

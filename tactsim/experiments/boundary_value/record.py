@@ -210,8 +210,8 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
     def warnings(self) -> list[str]:
         """Warnings about volumes and ellipticity, about an unstable end, and about rigid bodies that never touched."""
         together = zip(self.problem.contacts, self._touched, strict=True)
-        model, last = self._kept["last"]
-        unstable = unstable_in_words(model, last)
+        last = self._kept["last"].state
+        unstable = unstable_in_words(self._kept["last"].model, last)
         return [
             *super().warnings(),
             *self._probes.doubts(last),

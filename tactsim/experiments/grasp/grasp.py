@@ -28,7 +28,7 @@ class Grasp(GraspSetup, Experiment):
     ...     loading=ts.close(to="1 mm", duration="1 s"),
     ... )
     >>> grasp.extent  # of grasp.run(), which takes some seconds
-    ('time', 1.0)
+    Extent(name='time', end=1.0)
 
     Source: thesis, sections 6.3 and 6.5.
     """

@@ -89,7 +89,7 @@ class GraspRecord(ContactRecord[GraspModel]):
     def kept_as(self, state: TimedState, event: bool) -> list[str]:
         """The first and the last state, and that of the largest sum of all pressures in lumens."""
         names = ["last"] if self._kept else ["first", "last"]
-        _, strongest = self._kept.get("strongest", (None, state))
+        strongest = self._kept["strongest"].state if "strongest" in self._kept else state
         if self.experiment.lumens and sum(state.loads[1:]) >= sum(strongest.loads[1:]):
             names.append("strongest")
         return names
@@ -156,7 +156,7 @@ class GraspRecord(ContactRecord[GraspModel]):
                 f"the grasp is its own mirror image: one part of {copies} is solved, and every solution looked at in the whole"
             )
         assumptions.append(penetration_allowed(experiment.tolerance))
-        if "last" in self._kept and (last := self._kept["last"][1].contact.regularisation.tolerance) < experiment.tolerance:
+        if "last" in self._kept and (last := self._kept["last"].state.contact.regularisation.tolerance) < experiment.tolerance:
             assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")
         if any(material.relaxation is not None for material in experiment.materials):
             assumptions.append(ERROR_IN_TIME.format(experiment.time.tolerance))
@@ -213,5 +213,5 @@ class GraspRecord(ContactRecord[GraspModel]):
         """Where the middle of each jaw's face stands in m at the last accepted step."""
         if "last" not in self._kept:
             return {side: self.model.touching_place(side).tolist() for side in JAWS}
-        _, last = self._kept["last"]
+        last = self._kept["last"].state
         return {side: contact.place.tolist() for side, contact in zip(JAWS, last.contact.contacts, strict=True)}

@@ -24,6 +24,7 @@ from tactsim.mechanics.models.any_block_source import AnyBlockSource, AnySource,
 from tactsim.mechanics.paths.loading import AnyLoading, check_periods
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.model import FrozenModel
+from tactsim.progress import Extent
 from tactsim.sensors.matrix_readout import MatrixReadout
 from tactsim.units import Angle, Length, NonNegative, Positive, format_quantity
 
@@ -128,9 +129,9 @@ class GraspSetup(FrozenModel):
     """Sensors and electronics of the taxels, from force to voltage and back; null ends at the force."""
 
     @property
-    def extent(self) -> tuple[str, float]:
+    def extent(self) -> Extent:
         """The time of all histories."""
-        return "time", self.duration
+        return Extent("time", self.duration)
 
     @property
     def tolerance(self) -> float:

@@ -12,6 +12,7 @@ from tactsim.fem.paths.loading import StepControl
 from tactsim.fem.paths.progress import check_steps
 from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
+from tactsim.progress import Extent
 from tactsim.units import Length, Positive, format_quantity
 
 LEAST_STEP = 1e-9
@@ -50,11 +51,11 @@ class DisplacedSetup(IndentationSetup):
     """Length of the load steps."""
 
     @property
-    def extent(self) -> tuple[str, float]:
+    def extent(self) -> Extent:
         """What ends the run: the tissue's rise to the inner sensor, or the displacement."""
         if self.stop == "threshold" and self.recess is not None:
-            return "tissue_rise", self.recess
-        return "displacement", self.displacement
+            return Extent("tissue_rise", self.recess)
+        return Extent("displacement", self.displacement)
 
     @property
     def depth(self) -> float:

@@ -17,7 +17,7 @@ class Indentation(DisplacedSetup, Experiment):
     >>> specimen = ts.Specimen(material="icf_stable", thickness="6 mm", radius="12 mm")
     >>> press = ts.Indentation(specimen=specimen, recess="0.4 mm", displacement="2 mm")
     >>> press.extent  # what ends press.run(), which takes some seconds: the touch of the inner sensor
-    ('tissue_rise', 0.0004)
+    Extent(name='tissue_rise', end=0.0004)
     """
 
     kind: Literal["indentation"] = "indentation"

@@ -136,7 +136,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
 
     def _around(self, model: SolidModel) -> dict[str, Quantity]:
         """Vectors of force and moment at the last kept state, and the pressure around an annulus."""
-        _, state = max(self._kept.values(), key=_time_of)
+        state = self._latest().state
         contact, unknowns = state.contact.contacts[0], state.contact.unknowns
         force = model.force(contact.state.traction)
         moment = model.moment(contact, unknowns)
@@ -215,7 +215,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         """The contact pressure along the surface of a section at the last kept state; none before the first."""
         if not self._kept:
             return None
-        model, state = max(self._kept.values(), key=_time_of)
+        model, state = (kept := self._latest()).model, kept.state
         displacement = model.displacement(state.contact.unknowns)
         weights, edges = model.points.weights, (-1, model.points.per_facet)
         area = weights.reshape(edges).sum(axis=1)
@@ -236,11 +236,6 @@ class IndentationRecord(ContactRecord[PressedModel]):
             "recess": self.setup.recess,
             "solver": solver_report(self, mesh_adaptations=self.adaptations),
         }
-
-
-def _time_of(kept: tuple[PressedModel, TimedState]) -> float:
-    """The time in s of a kept state."""
-    return kept[1].time
 
 
 def specimen_assumptions(setup: IndentationSetup) -> list[str]:

@@ -15,6 +15,7 @@ from tactsim.materials.library import named_material
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mechanics.paths.loading import AnyLoading, DisplacementLoading
 from tactsim.mechanics.paths.step_policy import StepPolicy, TimeSettings, shortest_relaxation_time
+from tactsim.progress import Extent
 from tactsim.units import Length, Positive, format_quantity
 
 LOAD_STEPS = 20
@@ -28,7 +29,7 @@ class TimedIndentation(IndentationSetup, Experiment):
     >>> specimen = ts.Specimen(material="icf_stable", thickness="6 mm", radius="12 mm")
     >>> press = ts.TimedIndentation(specimen=specimen, loading=ts.close("0.5 mm", "1 s", hold="4 s"))
     >>> press.extent  # of press.run(), which takes some seconds
-    ('time', 5.0)
+    Extent(name='time', end=5.0)
     """
 
     kind: Literal["timed_indentation"] = "timed_indentation"
@@ -67,9 +68,9 @@ class TimedIndentation(IndentationSetup, Experiment):
         return unloaded_indentation(self)
 
     @property
-    def extent(self) -> tuple[str, float]:
+    def extent(self) -> Extent:
         """The time of the history."""
-        return "time", self.loading.duration
+        return Extent("time", self.loading.duration)
 
     @property
     def depth(self) -> float:

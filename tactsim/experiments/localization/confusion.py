@@ -79,14 +79,14 @@ class Confusion(Experiment):
         readings = self._readings(plain, stored)
         return Course(self._estimated(readings, counted), lambda: self._findings(counted, tuple(dict.fromkeys(doubts))))
 
-    def _estimated(self, readings: Sequence[tuple[str, str, Readings]], counted: _Counted) -> Iterator[StepRecord]:
-        for number, (name, true, one) in enumerate(readings):
-            estimates = [estimate_of(self.estimator, self._noisy(one, number, draw)) for draw in range(self.draws)]
+    def _estimated(self, readings: Sequence[NamedReadings], counted: _Counted) -> Iterator[StepRecord]:
+        for number, grasp in enumerate(readings):
+            estimates = [estimate_of(self.estimator, self._noisy(grasp.readings, number, draw)) for draw in range(self.draws)]
             alone = ConfusionTable()
             for estimate in estimates:
                 for table in (counted.table, alone):
-                    table.add(true, estimated_class(estimate))
-            counted.judged.append(JudgedGrasp(grasp=name, true=true, classes=tuple(one.classes for one in estimates)))
+                    table.add(grasp.true, estimated_class(estimate))
+            counted.judged.append(JudgedGrasp(grasp=grasp.name, true=grasp.true, classes=tuple(one.classes for one in estimates)))
             counted.steps.append(StepRecord(number + 1, 0, 0.0, {"right": float(alone.share_right or 0.0)}))
             yield counted.steps[-1]
 
@@ -101,8 +101,8 @@ class Confusion(Experiment):
             scene=ConfusionScene(classes=CLASSES, grasps=tuple(counted.judged), estimator=self.estimator.kind),
         )
 
-    def _readings(self, reference: Result, grasps: Sequence[Result]) -> list[tuple[str, str, Readings]]:
-        """Name, true class, and readings with reference and response of every grasp."""
+    def _readings(self, reference: Result, grasps: Sequence[Result]) -> list[NamedReadings]:
+        """Those of every grasp, with reference and response."""
         plain = readings_of(reference, self.readings, noise=self.noise)
         response = stored_response(self.reference) if self.estimator.needs_response else None
         readings = []
@@ -114,7 +114,7 @@ class Confusion(Experiment):
                     f"grasps: {folder_words(folder)} has {', '.join(shapes)}; allowed: at most two lumps, or at most two tubes"
                 )
             one = with_reference(readings_of(stored, self.readings, noise=self.noise), plain)
-            readings.append((folder_words(folder), true, replace(one, response=response)))
+            readings.append(NamedReadings(folder_words(folder), true, replace(one, response=response)))
         return readings
 
     def _noisy(self, readings: Readings, number: int, draw: int) -> Readings:
@@ -186,6 +186,15 @@ class ConfusionTable:
     def recalls(self) -> list[float | None]:
         """Share of each true class that was named as such; None for a class that does not occur."""
         return [float(row[k] / row.sum()) if row.sum() else None for k, row in enumerate(self.counts)]
+
+
+@dataclass(frozen=True)
+class NamedReadings:
+    """Readings of a grasp, its name and the class that it truly is of."""
+
+    name: str
+    true: str
+    readings: Readings
 
 
 @dataclass

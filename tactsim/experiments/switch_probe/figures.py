@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import cycle
 from typing import Literal
@@ -38,6 +39,20 @@ class Curve:
         """Values of the steps that it joins."""
         names, of = result.scene_as(SwitchProbeScene).tissues, (self.tissue, self.rate)
         return [step.values for step in result.steps if (names[int(step.values["tissue"]) - 1], step.values["rate"]) == of]
+
+
+@dataclass(frozen=True)
+class CurveStyle:
+    """How a curve is drawn: its colour, its line, and the marks of the switches on it, by matplotlib's names."""
+
+    colour: str
+    line: str
+    mark: str
+
+    @classmethod
+    def cycled(cls) -> Iterator[CurveStyle]:
+        """Those of the curves of a panel, one after another, without end."""
+        yield from map(cls, cycle(COLOURS), cycle(LINES), cycle(MARKS))
 
 
 @dataclass(frozen=True)
@@ -88,7 +103,7 @@ def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest
     with result_figure(result, size, below=words, title_size=TITLE_SIZE) as figure:
         axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
         for axis, panel in zip(axes, panels, strict=True):
-            for style, curve in zip(zip(cycle(COLOURS), cycle(LINES), cycle(MARKS), strict=False), panel.curves, strict=False):
+            for style, curve in zip(CurveStyle.cycled(), panel.curves, strict=False):
                 _draw_curve(axis, result, curve, style)
             _finish(axis, result, panel.title)
     return figure
@@ -146,18 +161,17 @@ def _draw_record(axis: Axes, result: Result, touch: RecordedTouch) -> None:
     despined(axis)
 
 
-def _draw_curve(axis: Axes, result: Result, curve: Curve, style: tuple[str, str, str]) -> None:
-    colour, line, mark = style
+def _draw_curve(axis: Axes, result: Result, curve: Curve, style: CurveStyle) -> None:
     steps = curve.steps(result)
     depth, force = (np.array([values[name] for values in steps]) for name in ("depth", "force"))
     loading = np.arange(len(depth)) <= int(depth.argmax()) if len(depth) else np.zeros(0, bool)
-    axis.plot(1e3 * depth[loading], force[loading], line, color=colour, label=curve.name)
+    axis.plot(1e3 * depth[loading], force[loading], style.line, color=style.colour, label=curve.name)
     time = np.array([values["time"] for values in steps])
     for touch in result.scene_as(SwitchProbeScene).touches:
         if (touch.tissue, touch.rate) == (curve.tissue, curve.rate):
             # where the probe was then: beside a tissue that yields, far deeper than the height of the switch
             at = 1e3 * np.interp([closing.time for closing in touch.closings], time[loading], depth[loading])
-            axis.plot(at, [closing.force for closing in touch.closings], mark, color=colour, markersize=4)
+            axis.plot(at, [closing.force for closing in touch.closings], style.mark, color=style.colour, markersize=4)
 
 
 def _finish(axis: Axes, result: Result, title: str) -> None:

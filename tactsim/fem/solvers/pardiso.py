@@ -25,6 +25,7 @@ from tactsim.fem.solvers.pardiso_binding import (
     SINGLE_PRECISION,
     SOLVE,
     SYMMETRIC_INDEFINITE,
+    CompressedRows,
     call_pardiso,
     fresh_binding,
 )
@@ -63,7 +64,7 @@ class Pardiso:
             self._solver.iparm[index] = value
         if minimum_degree:
             self._solver.iparm[ORDER] = 0
-        self._system: tuple[Array, Array, Array] | None = None
+        self._system: CompressedRows | None = None
 
     def factor(self, matrix: csr_matrix) -> None:
         """Factor the matrix; analyses the pattern on the first call.
@@ -84,14 +85,16 @@ class Pardiso:
     def _take(self, matrix: csr_matrix, phase: int, written: Array | None = None) -> None:
         """Analyse or factor a matrix; ``written`` takes what Pardiso returns beside the factor."""
         if self._system is None:
-            indptr, indices = self._structure(matrix)
-            self._release = weakref.finalize(self, call_pardiso, self._solver, RELEASE, (np.zeros(0),) * 3, np.zeros(0))
+            row_starts, columns = self._structure(matrix)
+            nothing = CompressedRows(np.zeros(0), np.zeros(0), np.zeros(0))
+            self._release = weakref.finalize(self, call_pardiso, self._solver, RELEASE, nothing, nothing.entries)
         else:
-            _, indptr, indices = self._system
+            row_starts, columns = self._system.row_starts, self._system.columns
         entries = self._entries(matrix)
         if self._single and not np.abs(entries).max() < np.finfo(np.float32).max:
             raise ConvergenceError("the matrix holds numbers that are not finite, or too large for single precision")
-        self._system = (entries.astype(np.float32 if self._single else np.float64, copy=False), indptr, indices)
+        entries = entries.astype(np.float32 if self._single else np.float64, copy=False)
+        self._system = CompressedRows(entries, row_starts, columns)
         call_pardiso(self._solver, phase, self._system, np.zeros(matrix.shape[0]), written)
 
     def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:

@@ -7,6 +7,7 @@ import ctypes
 import functools
 import os
 from contextlib import suppress
+from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
 from typing import Any
@@ -46,12 +47,20 @@ LIBRARY_VARIABLE = "PYPARDISO_MKL_RT"
 """Environment variable in which pypardiso takes the path of MKL's library."""
 
 
-def call_pardiso(
-    solver: Any, phase: int, system: tuple[Array, Array, Array], right: Array, written: Array | None = None
-) -> Array:
-    """One phase of Pardiso for a right-hand side (n,); ``system`` is data (k,), indptr (n + 1,) and indices (k,).
+@dataclass(frozen=True, slots=True)
+class CompressedRows:
+    """A matrix as Pardiso takes it: entries (k,) row by row, where each row begins (n + 1,), and the column (k,) of each entry.
 
-    ``written`` takes the result if that is no solution (n,).
+    Rows and columns are counted from one.
+    """
+
+    entries: Array
+    row_starts: Array
+    columns: Array
+
+
+def call_pardiso(solver: Any, phase: int, system: CompressedRows, right: Array, written: Array | None = None) -> Array:
+    """One phase of Pardiso for a right-hand side (n,); ``written`` takes the result if that is no solution (n,).
 
     Raises
     ------
@@ -67,9 +76,8 @@ def call_pardiso(
     def number(value: int) -> Any:
         return ctypes.byref(ctypes.c_int32(value))
 
-    data, indptr, indices = system
     threads = solver.libmkl.MKL_Set_Num_Threads_Local
-    before = threads(ctypes.c_int(1 if len(data) and len(right) < SERIAL_UNKNOWNS else 0))
+    before = threads(ctypes.c_int(1 if len(system.entries) and len(right) < SERIAL_UNKNOWNS else 0))
     solver._mkl_pardiso(
         solver.pt.ctypes.data_as(ctypes.POINTER(solver._pt_type[0])),
         number(1),
@@ -77,9 +85,9 @@ def call_pardiso(
         number(solver.mtype),
         number(phase),
         number(len(right)),
-        data.ctypes.data_as(real),
-        indptr.ctypes.data_as(integer),
-        indices.ctypes.data_as(integer),
+        system.entries.ctypes.data_as(real),
+        system.row_starts.ctypes.data_as(integer),
+        system.columns.ctypes.data_as(integer),
         solver.perm.ctypes.data_as(integer),
         number(1),
         solver.iparm.ctypes.data_as(integer),

@@ -108,7 +108,7 @@ async def feeding(feed: Feed, place: FeedPlace) -> AsyncIterator[None]:
         If the socket cannot be opened.
     """
     if place.socket:
-        async with _listening(feed, place.socket):
+        async with _listening(feed, *place.socket):
             yield
         return
     if place.file is None:
@@ -181,7 +181,7 @@ def _read_input(feed: Feed, loop: asyncio.AbstractEventLoop) -> None:
 
 
 @asynccontextmanager
-async def _listening(feed: Feed, address: tuple[str, int]) -> AsyncIterator[None]:
+async def _listening(feed: Feed, host: str, port: int) -> AsyncIterator[None]:
     busy, open_ones = asyncio.Lock(), set[asyncio.StreamWriter]()
 
     async def connected(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
@@ -199,9 +199,9 @@ async def _listening(feed: Feed, address: tuple[str, int]) -> AsyncIterator[None
             writer.close()
 
     try:
-        server = await asyncio.start_server(connected, *address)
+        server = await asyncio.start_server(connected, host, port)
     except OSError as error:
-        raise StorageError(f"cannot listen on {SCHEME}{address[0]}:{address[1]}: {error.strerror or error}") from None
+        raise StorageError(f"cannot listen on {SCHEME}{host}:{port}: {error.strerror or error}") from None
     try:
         yield
     finally:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -50,6 +50,22 @@ COARSE = 4
 """Spacing, in tabulated centres, of the balls that are tried in all pairs."""
 COARSE_SPACING, FINE_SPACING = 4e-3, 2e-3
 """Distance in m of the parallel tubes that are tried in all pairs, and in the best ones."""
+
+
+@dataclass(frozen=True)
+class ExplainedChange:
+    """What a class explains of a change of the forces.
+
+    Parameters
+    ----------
+    log_density : of the change under the class
+    bodies : that explain it
+    candidates : that were tried, in deviations
+    """
+
+    log_density: float
+    bodies: Explanation
+    candidates: Candidates
 
 
 class HypothesesEstimator(Estimator):
@@ -127,7 +143,7 @@ class HypothesesEstimator(Estimator):
         assert balls is not None  # only the few of a pair may be missing
         fits = [fitted(balls.signals, values, errors, self.contrast_spread) for errors in priors]
         explained = {str(name): self._explained_by(name, fits, readings.response, readings.block_size) for name in self.classes}
-        densities = {name: [log_density for log_density, *_ in each] for name, each in explained.items()}
+        densities = {name: [one.log_density for one in each] for name, each in explained.items()}
         densities["none"] = [fit.nothing for fit in fits]
         probabilities = self._probabilities(
             {name: self._prior(name) + float(np.logaddexp.reduce(each)) for name, each in densities.items()}
@@ -139,7 +155,8 @@ class HypothesesEstimator(Estimator):
             reason = f"no inclusion (probability {probabilities['none']:.3g}){factor_words(factor)}"
             return Estimate(False, (), reason, probability, probabilities, factor)
         cell, factor = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes]), fits[best].factor
-        inclusions = likely_bodies(*explained[likeliest][best][1:], cell)
+        chosen = explained[likeliest][best]
+        inclusions = likely_bodies(chosen.bodies, chosen.candidates, cell)
         reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}{factor_words(factor)}"
         return Estimate(True, inclusions, reason, probability, probabilities, factor)
 
@@ -150,17 +167,13 @@ class HypothesesEstimator(Estimator):
         other = ReferenceErrors(plain, readings.noise, self.background_error, self.factor_spread, self.model_error)
         return [same, other] if self.factor_spread > 0 else [same]
 
-    def _explained_by(
-        self, name: str, fits: list[ReferenceFit], response: TissueResponse, size: Array
-    ) -> list[tuple[float, Explanation, Candidates]]:
+    def _explained_by(self, name: str, fits: list[ReferenceFit], response: TissueResponse, size: Array) -> list[ExplainedChange]:
         """What a class explains of the change of each fit."""
         bodies = self._bodies(name, response, size)
         return [self._explained(name, fit, bodies) for fit in fits]
 
-    def _explained(
-        self, name: str, fit: ReferenceFit, bodies: tuple[Candidates, Candidates | None]
-    ) -> tuple[float, Explanation, Candidates]:
-        """Log density of the change of a fit under a class, the bodies that explain it, and the candidates in deviations."""
+    def _explained(self, name: str, fit: ReferenceFit, bodies: tuple[Candidates, Candidates | None]) -> ExplainedChange:
+        """What a class explains of the change of a fit."""
         check_time()
         candidates, coarse = (
             some and replace(some, signals=whitened(fit.factor * some.signals, fit.covariance)) for some in bodies
@@ -169,9 +182,9 @@ class HypothesesEstimator(Estimator):
         change = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)
         if coarse is None:
             one = change.single(candidates)
-            return fit.log_whitening + one.evidence, one, candidates
+            return ExplainedChange(fit.log_whitening + one.evidence, one, candidates)
         one = change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)]))
-        return fit.log_whitening + one.evidence, one, candidates
+        return ExplainedChange(fit.log_whitening + one.evidence, one, candidates)
 
     def _bodies(self, name: str, response: TissueResponse, size: Array) -> tuple[Candidates, Candidates | None]:
         """The bodies of a class, and for pairs a few of them."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any, Generic, Protocol, TypeVar
 
 from tactsim.array import Array
@@ -49,6 +50,14 @@ class FollowedPath(Protocol):
 Model = TypeVar("Model", bound=ContactModel)
 
 
+@dataclass(frozen=True)
+class KeptState(Generic[Model]):
+    """A state whose fields are kept, and the model that it is of, which an adapted mesh replaces on the way."""
+
+    model: Model
+    state: TimedState
+
+
 class ContactRecord(ABC, Generic[Model]):
     """Collects the accepted states of a run, and reports the findings.
 
@@ -75,7 +84,7 @@ class ContactRecord(ABC, Generic[Model]):
         self.event: StepRecord | None = None
         """The step at which what the run looks for happened; None if it did not."""
         self.quality = ContactQuality(stiffest, finer=finer, reached=reached)
-        self._kept: dict[str, tuple[Model, TimedState]] = {}
+        self._kept: dict[str, KeptState[Model]] = {}
 
     def accept(self, state: TimedState, *, event: bool = False) -> StepRecord:
         """Record an accepted state, and whether it is the event.
@@ -91,7 +100,7 @@ class ContactRecord(ABC, Generic[Model]):
         if event:
             self.event = record
         for name in self.kept_as(state, event):
-            self._kept[name] = (self.model, state)
+            self._kept[name] = KeptState(self.model, state)
         return record
 
     @abstractmethod
@@ -119,7 +128,7 @@ class ContactRecord(ABC, Generic[Model]):
 
     def unloaded(self, start: TimedState) -> Findings:
         """Frame and scene of the state that the path begins at; nothing is solved."""
-        self._kept["last"] = self.model, start
+        self._kept["last"] = KeptState(self.model, start)
         return Findings("at rest", assumptions=self.assumptions(), frames=self._frames(), scene=self.scene())
 
     @abstractmethod
@@ -140,11 +149,15 @@ class ContactRecord(ABC, Generic[Model]):
 
     def _frames(self) -> list[FieldFrame]:
         """Fields of the kept states, by time, each state once."""
-        kept = {id(state): (model, state) for model, state in self._kept.values()}.values()
+        kept = {id(one.state): one for one in self._kept.values()}.values()
         return [
-            model.frame(state.contact, time=state.time, isochoric=state.isochoric)
-            for model, state in sorted(kept, key=lambda pair: pair[1].time)
+            one.model.frame(one.state.contact, time=one.state.time, isochoric=one.state.isochoric)
+            for one in sorted(kept, key=lambda one: one.state.time)
         ]
+
+    def _latest(self) -> KeptState[Model]:
+        """The latest of the kept states; there must be one."""
+        return max(self._kept.values(), key=lambda one: one.state.time)
 
     @abstractmethod
     def scene(self) -> Scene:

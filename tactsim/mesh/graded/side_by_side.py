@@ -180,7 +180,10 @@ def _lines_beside(
         moved[:, 0, 0], moved[:, -1, 1] = spans[:, 0], length - spans[:, 1]
         lines.append(
             np.array(
-                [_line(moved[i], middle[i], (ends, between), settings, length=length, across=across) for i in range(len(moved))]
+                [
+                    _line(sides_of, middle_of, settings, ends=ends, between=between, length=length, across=across)
+                    for sides_of, middle_of in zip(moved, middle, strict=True)
+                ]
             )
         )
     return first, lines[0], lines[1]
@@ -201,10 +204,20 @@ def _box_sides(bounds: Array, length: float, settings: BlockMeshSettings, *, pre
 
 
 def _line(
-    sides: Array, middle: Array, counts: tuple[list[int], list[int]], settings: BlockMeshSettings, *, length: float, across: int
+    sides: Array,
+    middle: Array,
+    settings: BlockMeshSettings,
+    *,
+    ends: Sequence[int],
+    between: Sequence[int],
+    length: float,
+    across: int,
 ) -> Array:
-    """Ascending places in m from face to face through boxes with sides (k, 2) and middles (k,), in given numbers of cells."""
-    (before, after), between = counts
+    """Ascending places in m from face to face through boxes with sides (k, 2) and middles (k,).
+
+    There are so many cells at both ``ends``, ``between`` neighbours, and ``across`` each box.
+    """
+    before, after = ends
     places = [outer_places(float(sides[0, 0]), before, settings)[:-1]]
     for k, (low, high) in enumerate(sides):
         places.append(np.interp(box_shares(across, 0.0), [-1, 0, 1], [low, middle[k], high])[:-1])

@@ -44,15 +44,15 @@ def taxel_history(outcome: RunOutcome, side: str) -> Array:
     return np.array(list(forces.values())).reshape(*max(forces), -1).transpose(2, 0, 1)
 
 
-def _taxels_at(inputs: Inputs, run: tuple[str, str], side: str, closing: float | None = None) -> Array:
+def _taxels_at(inputs: Inputs, study: str, run: str, side: str, *, closing: float | None = None) -> Array:
     """Forces (rows, columns) in N on the taxels of a jaw at the end of a run, or at a closing in m that a step ended with."""
-    outcome = inputs.converged(*run)
+    outcome = inputs.converged(study, run)
     forces = taxel_history(outcome, side)
     if closing is None:
         return forces[-1]
     away = np.abs(np.array(outcome.history["displacement"]) - closing)
     if away.min() > SAME * closing:
-        raise InputError(f"no step of {', '.join(run)} ended at a closing of {format_quantity(closing, 'm')}")
+        raise InputError(f"no step of {study}, {run} ended at a closing of {format_quantity(closing, 'm')}")
     return forces[int(away.argmin())]
 
 
@@ -79,7 +79,7 @@ def taxel_asymmetry(
     UnknownName, InputError
         If there is no such run, or it did not converge or has no taxels.
     """
-    forces = np.stack([_taxels_at(inputs, (study, run), side) for side in JAWS])
+    forces = np.stack([_taxels_at(inputs, study, run, side) for side in JAWS])
     axis = {"upper_lower": 0, "front_back": 1, "left_right": 2}[mirror]
     return float(np.abs(forces - np.flip(forces, axis)).max() / np.abs(forces).max())
 
@@ -91,7 +91,7 @@ def _forces_on(
     if side == "upper less lower":
         upper, lower = (_forces_on(inputs, study, runs, side=jaw, taxel=taxel, closing=closing) for jaw in JAWS)
         return upper - lower
-    return np.array([_force_on(_taxels_at(inputs, (study, run), side, closing), taxel) for run in runs])
+    return np.array([_force_on(_taxels_at(inputs, study, run, side, closing=closing), taxel) for run in runs])
 
 
 def _comparable(change: str, runs: tuple[str, ...], bases: tuple[str, ...]) -> None:
@@ -166,7 +166,7 @@ def taxel_contrast(
     UnknownName, InputError
         If there is no such run, or it did not converge or has no such taxel.
     """
-    forces = _taxels_at(inputs, (study, run), side)
+    forces = _taxels_at(inputs, study, run, side)
     return max(_force_on(forces, taxel) - _force_on(forces, other) for other in others)
 
 
@@ -226,7 +226,7 @@ def taxel_maps(inputs: Inputs, title: Title, studies: Annotated[tuple[str, ...],
     """
 
     def forces(study: str, side: str) -> list[list[float]]:
-        return _taxels_at(inputs, (study, inputs.study(study)[0].id), side).tolist()
+        return _taxels_at(inputs, study, inputs.study(study)[0].id, side).tolist()
 
     columns = [
         {"title": study.replace("figure_", "Fig. ").replace("_", "."), **{s: forces(study, s) for s in JAWS}} for study in studies
@@ -261,7 +261,7 @@ def tactile_pictures(
     """
 
     def read(name: str) -> Array:
-        return np.stack([_taxels_at(inputs, (name, inputs.study(name)[0].id), side) for side in JAWS])
+        return np.stack([_taxels_at(inputs, name, inputs.study(name)[0].id, side) for side in JAWS])
 
     forces = read(study) if reference is None else np.maximum(read(study) - read(reference), 0.0)
     if pictures == "views":

@@ -12,7 +12,7 @@ from pretence import PNG, Pretence
 from tactsim import plotting
 from tactsim.cli import main
 from tactsim.interfaces.run import Course
-from tactsim.progress import COMPILATION
+from tactsim.progress import COMPILATION, Extent
 from tactsim.results import read_result
 
 
@@ -50,7 +50,7 @@ def test_the_time_left_does_not_count_compiling(monkeypatch: pytest.MonkeyPatch,
         return begin(self)
 
     monkeypatch.setattr(Pretence, "begin", compiled)
-    monkeypatch.setattr(Pretence, "extent", property(lambda self: ("displacement", 3e-4)))
+    monkeypatch.setattr(Pretence, "extent", property(lambda self: Extent("displacement", 3e-4)))
     assert main(["run", "case.yaml", "--progress"]) == 0
     assert "about 4 s left" in capsys.readouterr().err.splitlines()[0]
 

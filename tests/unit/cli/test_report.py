@@ -11,6 +11,7 @@ from pretence import pretended_result
 
 from tactsim.cli.report import last_line, result_report, step_line
 from tactsim.materials.library import LIBRARY
+from tactsim.progress import Extent
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.quantity import format_values
 
@@ -94,12 +95,12 @@ def test_a_step_is_one_line() -> None:
 
 def test_a_step_says_how_far_the_run_is() -> None:
     record = StepRecord(3, 5, 1e-12, {"time": 0.5})
-    line = step_line(record, {"time": "s"}, ("time", 2.0))
+    line = step_line(record, {"time": "s"}, Extent("time", 2.0))
     assert line.startswith("step    3  25%  time 500 ms")
     assert "left" not in line
-    assert step_line(record, {"time": "s"}, ("time", 2.0), 12.0).endswith("about 36 s left")
-    assert step_line(record, {"time": "s"}, ("time", 2.0), 60.0).endswith("about 3 min left")
-    assert "left" not in step_line(record, {"time": "s"}, ("time", 0.5), 12.0), "the run is at its end"
+    assert step_line(record, {"time": "s"}, Extent("time", 2.0), 12.0).endswith("about 36 s left")
+    assert step_line(record, {"time": "s"}, Extent("time", 2.0), 60.0).endswith("about 3 min left")
+    assert "left" not in step_line(record, {"time": "s"}, Extent("time", 0.5), 12.0), "the run is at its end"
 
 
 def test_a_line_shows_the_first_values_that_the_units_name() -> None:

@@ -13,7 +13,7 @@ import pytest
 from drawn import colliding_words, text_of
 from sweeps import TEXT, Inline, run_sweep, sweep_file
 
-from tactsim.dataset.figures.card import spread, taxels
+from tactsim.dataset.figures.card import Spread, spread, taxels
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
@@ -115,7 +115,7 @@ def test_the_code_in_the_card_learns_from_forces_and_not_from_the_mesh() -> None
 def test_the_figures_of_a_card_have_a_title_and_words_that_stand_clear() -> None:
     """The numbers of 16 rows stood on each other, and forces of some micronewtons had a power of ten beside the colours."""
     force = 1e-5 * np.random.default_rng(1).random((2, 16, 16))
-    figures = [taxels(force, "Lumps: 3 samples"), spread({"largest_force": (force[0, 0], "N")}, "Lumps: 3 samples")]
+    figures = [taxels(force, "Lumps: 3 samples"), spread({"largest_force": Spread(force[0, 0], "N")}, "Lumps: 3 samples")]
     for figure in figures:
         assert colliding_words(figure) == []
         assert figure.get_suptitle() == "Lumps: 3 samples"
@@ -131,7 +131,7 @@ def test_ticks_of_narrow_ranges_are_not_written_over_each_other() -> None:
         "tiny": (1.00012, 1.00019),
         "large": (-2600.0, 2666.0),
     }
-    figure = spread({name: (low + (high - low) * shares, "1") for name, (low, high) in ranges.items()}, "Lumps: 30 samples")
+    figure = spread({name: Spread(low + (high - low) * shares, "1") for name, (low, high) in ranges.items()}, "Lumps: 30 samples")
     figure.draw_without_rendering()
     for axis in figure.axes:
         low, high = axis.get_xlim()

@@ -20,6 +20,7 @@ from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.materials.polynomial import Polynomial
 from tactsim.materials.sampled_stability import sampled_drucker_margin, sampled_ellipticity_margin
 from tactsim.materials.stability import (
+    EnergyDerivatives,
     convex_in_invariants,
     drucker_margin,
     ellipticity_margin,
@@ -114,8 +115,7 @@ def test_a_state_may_be_lost_by_the_third_set_of_conditions_alone(coefficients, 
     material = Polynomial(coefficients=dict(zip(("c10", "c01", "c20", "c11", "c02"), coefficients, strict=True)))
     state = np.array([*stretches, 1 / np.prod(stretches)])
     invariants = principal_invariants(state)
-    derivatives = (*material.energy_gradient(*invariants), *material.energy_hessian(*invariants))
-    shear, opposite, _ = shear_conditions(derivatives, state)
+    shear, opposite, _ = shear_conditions(EnergyDerivatives.of(material, *invariants), state)
     assert min(shear.min(), opposite.min()) > 0
     assert smallest_acoustic_form(material, np.diag(state), 0) < 0
     assert ellipticity_margin(material, state) < 0

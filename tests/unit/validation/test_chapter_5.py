@@ -9,7 +9,7 @@ from wrong_rows import misjudged
 
 from tactsim.errors import InputError
 from tactsim.shipped import CASES
-from tactsim.validation.execution import simulated
+from tactsim.validation.execution import Task, simulated
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.probe import Press, probe_force_ratio, switch_mean_rate
 from tactsim.validation.study import RunOutcome
@@ -24,7 +24,7 @@ SOLVED = ("finite_elements", "tissues_fem")
 def inputs() -> Inputs:
     """The studies of the fast model, computed."""
     studies = {
-        study.name: tuple(simulated((run.id, str(SHIPPED / study.case), study.overrides(run))) for run in study.runs)
+        study.name: tuple(simulated(Task(run.id, str(SHIPPED / study.case), study.overrides(run))) for run in study.runs)
         for study in shipped_table("chapter_5").studies
         if study.name not in SOLVED
     }

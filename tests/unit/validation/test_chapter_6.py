@@ -16,7 +16,7 @@ from tactsim.errors import CaseError, InputError, InvalidQuantity, UnknownName
 from tactsim.shipped import CASES
 from tactsim.validation import compare, load_tables
 from tactsim.validation.endings import Confirmed
-from tactsim.validation.execution import StudyRunner, simulated
+from tactsim.validation.execution import StudyRunner, Task, simulated
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.grasp import taxel_asymmetry, taxel_change, taxel_contrast, taxel_history, taxel_pulse
 from tactsim.validation.report import CLASSES, Validation, count_rows, table_text
@@ -231,7 +231,7 @@ def check(rows: Sequence[Row], outcomes: Callable[[Sequence[Study]], Mapping[str
 def in_one_step(studies: Sequence[Study]) -> Mapping[str, tuple[RunOutcome, ...]]:
     return {
         study.name: tuple(
-            simulated((run.id, str(SHIPPED / study.case), (*study.overrides(run), "experiment.time.steps=1")))
+            simulated(Task(run.id, str(SHIPPED / study.case), (*study.overrides(run), "experiment.time.steps=1")))
             for run in study.runs
         )
         for study in studies

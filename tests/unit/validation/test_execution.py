@@ -29,10 +29,13 @@ def computed(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     seen: list[str] = []
 
     def pretended(self: StudyRunner, waiting: dict[str, Task], progress: object) -> Iterator[tuple[str, RunOutcome]]:
-        for case_id, (name, _, _) in waiting.items():
+        for case_id, task in waiting.items():
             seen.append(case_id)
-            status = "interrupted" if "stick" in name else "converged"
-            yield case_id, RunOutcome(id=name, case_id=case_id, status=status, reason="", quantities={}, history={}, seconds=0)
+            status = "interrupted" if "stick" in task.name else "converged"
+            yield (
+                case_id,
+                RunOutcome(id=task.name, case_id=case_id, status=status, reason="", quantities={}, history={}, seconds=0),
+            )
 
     monkeypatch.setattr(StudyRunner, "_computed", pretended)
     return seen
@@ -75,5 +78,5 @@ def test_a_refusal_on_the_way_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> 
         raise InputError("no mesh")
 
     monkeypatch.setattr(Indentation, "begin", refused)
-    outcome = simulated(("refused", str(CASES / STUDY.case), ()))
+    outcome = simulated(Task("refused", str(CASES / STUDY.case), ()))
     assert (outcome.status, outcome.reason) == ("failed", "no mesh")

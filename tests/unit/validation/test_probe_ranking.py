@@ -7,7 +7,7 @@ import pytest
 
 from tactsim.errors import InputError
 from tactsim.shipped import CASES
-from tactsim.validation.execution import simulated
+from tactsim.validation.execution import Task, simulated
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.probe import (
     Press,
@@ -78,7 +78,7 @@ def test_ranks_and_the_figure():
 def test_the_ranking_of_figure_5_8_by_finite_elements(one_thread):
     """Nine touches, about three minutes: the order of the tissues is the fast model's, the forces are within 2 %."""
     paths = {"fem": CASES / "switch_tissues_fem.yaml", "fast": CASES / "switch_tissues.yaml"}
-    both = Inputs(studies={name: (simulated(("r", str(path), [])),) for name, path in paths.items()})
+    both = Inputs(studies={name: (simulated(Task("r", str(path), ())),) for name, path in paths.items()})
     assert probe_order_kept(both, FAST, FEM, **BOTH) == 1
     assert probe_model_difference(both, FAST, FEM, **BOTH) < 0.025  # 1.97 %: tissue 1 at 0.5 mm/s, 5 mm
 

@@ -10,7 +10,7 @@ from wrong_rows import misjudged
 
 from tactsim.errors import InputError
 from tactsim.shipped import CASES
-from tactsim.validation.execution import simulated
+from tactsim.validation.execution import Task, simulated
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.quantities.published import (
@@ -31,7 +31,7 @@ PRINTED = (PrintedNumber(at="1 s", quantity="number", value="2 m"),)
 def inputs_of(table: Table, names: tuple[str, ...]) -> Inputs:
     """Some studies of a table, computed here."""
     studies = {
-        study.name: tuple(simulated((run.id, str(PUBLISHED / study.case), study.overrides(run))) for run in study.runs)
+        study.name: tuple(simulated(Task(run.id, str(PUBLISHED / study.case), study.overrides(run))) for run in study.runs)
         for study in table.studies
         if study.name in names
     }

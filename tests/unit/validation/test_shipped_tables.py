@@ -13,7 +13,7 @@ from wrong_rows import misjudged
 from tactsim.case import loading
 from tactsim.shipped import CASES
 from tactsim.validation.endings import Confirmed, Contradicted, Regression
-from tactsim.validation.execution import simulated
+from tactsim.validation.execution import Task, simulated
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
 from tactsim.validation.table import Table
@@ -30,7 +30,7 @@ SHORT_SIMULATIONS = ("section_2_3", "section_3_1_2")
 def inputs_of(table: Table) -> Inputs:
     """The studies of a table, computed here."""
     studies = {
-        study.name: tuple(simulated((run.id, str(SHIPPED / study.case), study.overrides(run))) for run in study.runs)
+        study.name: tuple(simulated(Task(run.id, str(SHIPPED / study.case), study.overrides(run))) for run in study.runs)
         for study in table.studies
     }
     return Inputs(folder=SHIPPED, studies=studies)

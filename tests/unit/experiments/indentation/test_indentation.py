@@ -17,6 +17,7 @@ from tactsim.experiments.indentation.scene import IndentationScene
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Layer, Specimen
+from tactsim.progress import Extent
 
 SOFT = NeoHookean(c10=1000.0)
 COARSE = MeshSettings(finest=0.3e-3, growth=1.0)
@@ -213,6 +214,6 @@ def test_a_run_to_the_threshold_is_as_far_as_the_tissue_has_risen() -> None:
     """By the largest displacement that is tried, a run that was done showed 11 % and hours to go."""
     example = Indentation.example()
     assert example.stop == "threshold"
-    assert example.extent == ("tissue_rise", example.recess)
+    assert example.extent == Extent("tissue_rise", example.recess)
     further = example.model_copy(update={"stop": "displacement"})
-    assert further.extent == ("displacement", example.displacement)
+    assert further.extent == Extent("displacement", example.displacement)
