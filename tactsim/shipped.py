@@ -13,7 +13,7 @@ _PACKAGE = Path(__file__).resolve().parent
 PROGRAM = _PACKAGE / "_shipped" if (_PACKAGE / "_shipped").is_dir() else _PACKAGE.parent
 """The folder that holds ``cases`` and ``meshes``."""
 CASES = PROGRAM / "cases"
-LONGEST_NAME = 60
+LONGEST_CASE_NAME = 60
 """Characters of a text that may be the name of a shipped case; a file name has 255 bytes, a character up to 4."""
 
 
@@ -28,7 +28,7 @@ def case_path(named: str | Path) -> Path:
         If it is a bare name, and no shipped case has it.
     """
     path = Path(named)
-    if not re.fullmatch(rf"\w{{1,{LONGEST_NAME}}}", str(named)) or (path.exists() and not path.is_dir()):
+    if not re.fullmatch(rf"\w{{1,{LONGEST_CASE_NAME}}}", str(named)) or (path.exists() and not path.is_dir()):
         return path
     known = {place.stem: place for place in shipped_cases()}
     if path.name not in known:

@@ -31,7 +31,7 @@ examples:
   tactsim compare results/soft results/hard
   tactsim compare results/designs --out designs --figures pdf
 """
-LONGEST_NAME = 24
+LONGEST_IN_TABLE = 24
 LEAST_HEAD, LEAST_CELL = 8, 10
 """Least widths of the columns of a table."""
 TABLE_FILE = "comparison.csv"
@@ -111,11 +111,11 @@ def _print(comparison: Comparison, everything: bool) -> None:
     """Print a row for every input that differs, and for every number, or for those that differ."""
     from tactsim.results.compared_numbers import FROM_FIRST, shown_number
 
-    names = [one_line(name, LONGEST_NAME) for name in comparison.names]
+    names = [one_line(name, LONGEST_IN_TABLE) for name in comparison.names]
     rows = [["", *names], ["status", *comparison.statuses]]
     if comparison.warned:
         rows.append(["warnings", *comparison.counted_warnings])
-    rows += [[key, *(one_line(value, LONGEST_NAME) for value in values)] for key, values in comparison.inputs.items()]
+    rows += [[key, *(one_line(value, LONGEST_IN_TABLE) for value in values)] for key, values in comparison.inputs.items()]
     columns = comparison.columns if everything else comparison.differing
     rows += [[column.head, *(shown_number(value) or "-" for value in column.values)] for column in columns]
     heads = max([LEAST_HEAD, *(len(column.head) for column in comparison.columns)])
@@ -127,7 +127,7 @@ def _print(comparison: Comparison, everything: bool) -> None:
 def _print_warnings(comparison: Comparison) -> None:
     """Print every warning once, with the results that have it."""
     for text, warned in comparison.warned.items():
-        console.out(f"warning: {', '.join(one_line(name, LONGEST_NAME) for name in warned)}: {one_line(text)}")
+        console.out(f"warning: {', '.join(one_line(name, LONGEST_IN_TABLE) for name in warned)}: {one_line(text)}")
 
 
 def _unit_of(experiment: Mapping[str, Any], path: tuple[str | int, ...]) -> str:

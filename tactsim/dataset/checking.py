@@ -17,7 +17,7 @@ from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, WORDS, d
 from tactsim.dataset.store.blocks import JOURNAL
 from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
 from tactsim.dataset.store.opening import ARRAYS, Store
-from tactsim.dataset.store.verifying import ChunkRead, computed_chunks, lost_status, waiting_in_journal
+from tactsim.dataset.store.verifying import SHOWN, ChunkRead, computed_chunks, lost_status, waiting_in_journal
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import one_line
@@ -32,8 +32,6 @@ MADE_LATER = ("codes", "versions", "schema", ARRAYS)
 AGAIN = "go on with --resume, which computes them again, or bring back a copy"
 MIRRORED = 2
 """Entries of a dimension that may be mirror images of each other."""
-SHOWN = 10
-"""Samples named in one finding."""
 
 
 @dataclass(frozen=True)

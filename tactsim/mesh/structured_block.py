@@ -28,6 +28,8 @@ _KUHN = np.array([[0, 1, 3, 7], [0, 3, 2, 7], [0, 2, 6, 7], [0, 6, 4, 7], [0, 4,
 """Six tetrahedra of a cell whose corners are numbered by x + 2 y + 4 z; equal diagonals on opposite sides."""
 SIDES = np.array([[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]])
 """Sides of such a cell, each around its edge, outward."""
+ON_SIDE = 1e-9
+"""Distance from a side of a grid that counts as on it, over the size of the grid."""
 
 
 def structured_block(

@@ -37,6 +37,12 @@ COMPRESSION = 2
 """Level of PNG: nearly twice as fast as the usual 6, for files an eighth larger."""
 PRINTED_RESOLUTION = 240
 """In dots per inch, of what is dense and therefore a picture inside a vector file."""
+TRACED = 250
+"""Points per direction on which the outline of a rigid body is traced."""
+SMALL_TITLE = 10.5
+"""Size in points of a title that stands over little."""
+LINE_COLOURS = ("#1f4e79", "#b8540a", "#2e7d32", "#6a1b9a", "#b00020", "#00838f")
+"""Of the curves of a panel, one after another."""
 NEXT_TO_NOTHING = 1e-9
 """In SI: curves that are smaller are round-off, and would fill an axis in pN."""
 LONGEST_TITLE = 200

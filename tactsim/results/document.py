@@ -53,7 +53,7 @@ def _known_unit(unit: str) -> str:
 SCALARS = frozenset({int, float, bool, type(None)})
 """Types of what a quantity holds; null stands for a number that is not finite."""
 LONGEST_NAME = 200
-"""Characters of the name of a quantity; those of this program have some forty."""
+"""Characters of a name, such as that of a quantity; those of this program have some forty."""
 Number = Annotated[float, Strict()]
 Count = Annotated[int, Strict()]
 Name = Annotated[str, Field(max_length=LONGEST_NAME)]

@@ -38,6 +38,10 @@ def read_variables(
     return variables
 
 
+READ = read_variables()
+"""Of one sensor."""
+
+
 def latest(times: Array, at: Array) -> Array:
     """Index of the last of increasing ``times`` (n,) in s that is not after each time in ``at``, of its shape."""
     return np.clip(np.searchsorted(times, at * (1 + 1e-12), side="right") - 1, 0, len(times) - 1)

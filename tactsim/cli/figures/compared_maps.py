@@ -34,7 +34,7 @@ SMALL = 0.01
 """Part of the largest number of a scale below which another is written with the decimals of that one."""
 MAP_SIZE, HEAD, BAR = 1.75, 1.1, 0.6
 """Width and height in inches of a map with its names, height of names and a colour bar, and of one more."""
-LONGEST_NAME = 18
+LONGEST_HEADING = 18
 
 
 @dataclass(frozen=True)
@@ -131,7 +131,7 @@ def draw_maps(figure: FigureBase, maps: TaxelMaps, names: Sequence[str]) -> None
             grid[row + 1, 0].set_axis_off()
             grid[row + 1, 1].set_ylabel(f"{side} jaw,\nless the first")
     for axis, name in zip(grid[0], names, strict=False):
-        axis.set_title(one_line(name, LONGEST_NAME), parse_math=False)
+        axis.set_title(one_line(name, LONGEST_HEADING), parse_math=False)
     if beside:
         grid[0, -1].set_title("second less first")
     style: dict[str, Any] = {"location": "bottom", "aspect": 30, "pad": 0.02}

@@ -13,10 +13,9 @@ from tactsim.interfaces.recording import Values
 from tactsim.interfaces.variable import Variable, label, reading
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.results.result import Result
-from tactsim.sensors.force_reading import read_variables
+from tactsim.sensors.force_reading import READ
 
 HISTORY = {"displacement": ("m", "displacement of the annulus"), "force": ("N", "force on the annulus, without noise")}
-READ = read_variables()
 
 
 class ClosedFormRecorder(Recorder):

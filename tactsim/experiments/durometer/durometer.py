@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 LEAST_THICKNESS = 6e-3
 """Thickness in m of a specimen that ASTM D2240 asks for; recalled, a declared assumption."""
-EVENT_TOLERANCE = 1e-5
+READING_TOLERANCE = 1e-5
 """Tolerance of the depth at the reading, as a part of the travel: a thousandth of a unit."""
 
 
@@ -124,7 +124,7 @@ class Durometer(Experiment):
         def surplus(state: ContactEquilibrium) -> float:
             return float(path.model.force(state.contacts[0].state.traction)[-1]) - float(self.scale.spring_force(state.load))
 
-        event = Event[ContactEquilibrium](surplus, tolerance=EVENT_TOLERANCE * self.scale.travel)
+        event = Event[ContactEquilibrium](surplus, tolerance=READING_TOLERANCE * self.scale.travel)
         for state, balanced in path.follow(path.start, event, adapted):
             yield state, balanced
         if balanced and self.stop == "travel":

@@ -22,7 +22,7 @@ from tactsim.mechanics.paths.history_path import TimedPath, TimedState, smooth_i
 from tactsim.mesh.adaptation import Refinement
 from tactsim.units import format_quantity
 
-EVENT_TOLERANCE = 1e-5
+THRESHOLD_TOLERANCE = 1e-5
 """Tolerance of the displacement at the threshold, as a part of the recess."""
 SWITCH_LENGTH = 0.03
 """Length, as a part of the body's radius, over which a violated contact counts as much as the largest contact pressure."""
@@ -102,7 +102,9 @@ class DisplacementPath:
             yield from self.follow(self.start, None, adapted)
             return
         radius = setup.hole
-        event = Event[ContactEquilibrium](lambda s: self.model.rise(s, radius)[0] - recess, tolerance=EVENT_TOLERANCE * recess)
+        event = Event[ContactEquilibrium](
+            lambda s: self.model.rise(s, radius)[0] - recess, tolerance=THRESHOLD_TOLERANCE * recess
+        )
         peak, peak_load = 0.0, 0.0
         for state, touched in self.follow(self.start, event, adapted):
             yield state, touched

@@ -18,7 +18,7 @@ from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.mechanics.outcome.contact_history import WHOLE_RUN
 from tactsim.mechanics.paths.history_path import smooth_intervals
 from tactsim.results.result import Result
-from tactsim.sensors.force_reading import read_variables
+from tactsim.sensors.force_reading import READ
 from tactsim.units import format_quantity
 
 GEOMETRY = {
@@ -50,7 +50,6 @@ CURVES = {
     "tissue_rise": "largest height of the tissue in the hole above the face; NaN of a body without a hole",
 }
 """What is stored on the way to the end, under its name and `_history`."""
-READ = read_variables()
 
 
 class PressedBodyRecorder(Recorder):

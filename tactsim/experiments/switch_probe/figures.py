@@ -14,12 +14,11 @@ from matplotlib.patches import Polygon, Rectangle
 
 from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
 from tactsim.interfaces import Drawing, ResultFigures
-from tactsim.plotting.canvas import Plot, despined, result_figure
+from tactsim.plotting.canvas import LINE_COLOURS, SMALL_TITLE, Plot, despined, result_figure
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
-TITLE_SIZE = 10.5
-COLOURS = ("#1f4e79", "#b8540a", "#2e7d32", "#6a1b9a", "#b00020", "#00838f", "#795548")
+COLOURS = (*LINE_COLOURS, "#795548")
 LINES, MARKS = ("-", "--", "-.", ":"), ("o", "s", "^", "D", "v")
 """Of the curves, which print in grey tells apart."""
 CLOSED, OPEN = "#2e7d32", "#d5d8dc"
@@ -100,7 +99,7 @@ def _rate(rate: float) -> str:
 
 def _curves_figure(result: Result, panels: list[Panel], title: str, *, narrowest: float = 0.0) -> Figure:
     size, words = (max(narrowest, 1.6 + 3.1 * len(panels)), 3.8), f"{title}; marks: read as each switch closed"
-    with result_figure(result, size, below=words, title_size=TITLE_SIZE) as figure:
+    with result_figure(result, size, below=words, title_size=SMALL_TITLE) as figure:
         axes = np.atleast_1d(figure.subplots(1, len(panels), sharey=True))
         for axis, panel in zip(axes, panels, strict=True):
             for style, curve in zip(CurveStyle.cycled(), panel.curves, strict=False):
@@ -117,7 +116,7 @@ def switch_panel_figure(result: Result) -> Figure:
     words = "no mean rate: not every switch closed" if rate is None else f"mean rate {1e3 * rate:.4g} mm/s"
     which = f"touch 1 of {len(scene.touches)}, " if len(scene.touches) > 1 else ""
     words = f"{which}{touch.tissue} at {_rate(touch.rate)}; {words}"
-    with result_figure(result, (9.4, 3.7), below=words, title_size=TITLE_SIZE) as figure:
+    with result_figure(result, (9.4, 3.7), below=words, title_size=SMALL_TITLE) as figure:
         probe, record = figure.subplots(1, 2, width_ratios=(1.1, 1))
         _draw_probe(probe, scene.switch_sides, touch)
         _draw_record(record, result, touch)

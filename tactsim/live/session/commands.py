@@ -9,12 +9,10 @@ from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, model_vali
 from tactsim.errors import InputError
 from tactsim.model import FrozenModel
 from tactsim.refusals import first_fault
+from tactsim.results.document import Name
 
 MOST_STEPS = 10**9
 """Largest number of a step or a sample: no recording or data set is as long."""
-LONGEST_NAME = 200
-"""Characters of the name of an estimator, a source or a split."""
-Name = Annotated[str, Field(max_length=LONGEST_NAME)]
 Number = Annotated[int, Field(ge=0, le=MOST_STEPS)]
 
 

@@ -21,14 +21,12 @@ from tactsim.errors import InputError
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.cells import Cells
 from tactsim.mesh.graded.lines import NEAREST, edge_thickness, mirrored_line, spaced
-from tactsim.mesh.structured_block import SIDES
+from tactsim.mesh.structured_block import ON_SIDE, SIDES
 
 THINNER = 0.75
 """Thickness of the cells at the edges of flats, and at all faces with them, over that at the faces of a block that the jaws
 cover. Pressure grows faster towards the edge of a flat than towards a free face: as many cells read taxels there 0.4 % low, and
 1.4 % with the usual thickness."""
-ON_SIDE = 1e-9
-"""Distance from a side of the part between the flats that counts as on it, over the longest side of the block."""
 
 
 @dataclass(frozen=True)

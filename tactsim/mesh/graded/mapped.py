@@ -14,12 +14,10 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.mesh.affordable import PER_TETRAHEDRON, check_along, check_unknowns
 from tactsim.mesh.quadratic import QuadraticMesh, quadratic_mesh
-from tactsim.mesh.structured_block import grid, product, twelfths
+from tactsim.mesh.structured_block import ON_SIDE, grid, product, twelfths
 
 PER_TRIANGLE = 4.5
 """Unknowns of a triangle: 2 nodes of two displacements, half a corner with a pressure (Euler's formula)."""
-ON_SIDE = 1e-9
-"""Distance from a side of the grid that counts as on it, as a part of the grid's size."""
 
 
 @dataclass(frozen=True)

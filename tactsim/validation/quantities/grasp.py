@@ -17,6 +17,7 @@ from tactsim.interfaces import drawing, quantity
 from tactsim.interfaces.taxel_layout import JAWS, JawName
 from tactsim.localization.bands import band_intensities
 from tactsim.localization.views import SHAPE, views, volume
+from tactsim.results.compared_numbers import CLOSE
 from tactsim.units import Length, NonNegative, Time, format_quantity
 from tactsim.validation.curves import Data, Title
 from tactsim.validation.inputs import Inputs, RunName, StudyName
@@ -26,8 +27,6 @@ JawOrDifference = JawName | Literal["upper less lower"]
 """A jaw, or the difference of both."""
 Taxel = tuple[int, int]
 """Row and column, counted from 1."""
-SAME = 1e-9
-"""Largest relative difference of two closings or times that is round-off."""
 
 
 def taxel_history(outcome: RunOutcome, side: str) -> Array:
@@ -51,7 +50,7 @@ def _taxels_at(inputs: Inputs, study: str, run: str, side: str, *, closing: floa
     if closing is None:
         return forces[-1]
     away = np.abs(np.array(outcome.history["displacement"]) - closing)
-    if away.min() > SAME * closing:
+    if away.min() > CLOSE * closing:
         raise InputError(f"no step of {study}, {run} ended at a closing of {format_quantity(closing, 'm')}")
     return forces[int(away.argmin())]
 
@@ -184,7 +183,7 @@ def taxel_pulse(inputs: Inputs, study: StudyName, run: RunName, start: NonNegati
         If there is no such run, or it did not converge, has no taxels, or fewer than two steps from this time on.
     """
     outcome = inputs.converged(study, run)
-    beating = np.array(outcome.history["time"]) >= start * (1 - SAME)
+    beating = np.array(outcome.history["time"]) >= start * (1 - CLOSE)
     if beating.sum() < 2:
         raise InputError(f"{run} has {beating.sum()} steps from {start:g} s on; a change needs two")
     return max(float(np.ptp(taxel_history(outcome, side)[beating], axis=0).max()) for side in JAWS)

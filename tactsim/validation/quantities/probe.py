@@ -12,6 +12,7 @@ from tactsim.contact.trapezoid import Trapezoid
 from tactsim.errors import InputError
 from tactsim.interfaces import drawing, quantity
 from tactsim.model import FrozenModel
+from tactsim.results.compared_numbers import CLOSE
 from tactsim.sensors.switch_array import Formula, SwitchArray
 from tactsim.sensors.switch_reading import read_switches
 from tactsim.units import Frequency, Length, Positive, Speed, format_quantity
@@ -24,8 +25,6 @@ LEAN_HEIGHT = 3e-3
 """Height in m above the face at which the lean of a side is measured."""
 STIFFNESS = 200.0
 """In N/m, of the tissue under the probe; a switch carries as much over what is below it. Only when they begin counts."""
-SAME = 1e-9
-"""Relative difference of two rates or depths that is round-off."""
 
 
 @quantity(unit=lambda dimension: DIMENSION_UNITS[dimension])
@@ -253,8 +252,8 @@ def _forces(inputs: Inputs, which: ProbeRun, tissues: int, rates: tuple[float, .
 def _force_at(asked: float, press: Press, outcome: RunOutcome, study: str) -> float:
     """Force in N at a depth in m on the way in, linear between the samples that the history keeps."""
     tissue, rate, depth, force = (np.array(outcome.history[name]) for name in ("tissue", "rate", "depth", "force"))
-    samples = np.flatnonzero((tissue == press.tissue) & (np.abs(rate - press.rate) <= SAME * press.rate))
-    if not samples.size or depth[samples].max() < asked * (1 - SAME):
+    samples = np.flatnonzero((tissue == press.tissue) & (np.abs(rate - press.rate) <= CLOSE * press.rate))
+    if not samples.size or depth[samples].max() < asked * (1 - CLOSE):
         speed, deep = format_quantity(press.rate, "m/s"), format_quantity(asked, "m")
         raise InputError(f"{study}, {outcome.id} has no touch of tissue {press.tissue} at {speed} down to {deep}")
     inwards = samples[: int(depth[samples].argmax()) + 1]

@@ -22,6 +22,7 @@ from tactsim.plotting.canvas import (
     PRESSURE_COLOURS,
     REGION_COLOURS,
     SKETCH,
+    TRACED,
     Plot,
     SingleFigure,
     despined,
@@ -39,8 +40,7 @@ from tactsim.units import format_quantity
 TITLE = "Boundary value problem"
 VIEW = np.array([0.55, -0.75, 0.40])
 """Direction from a body in 3D to the eye."""
-RIGID_COLOUR, GRID = "#c8ccd2", 250
-"""Of a rigid body, and the points per direction on which its outline is traced."""
+RIGID_COLOUR = "#c8ccd2"
 STRESSED, SPECK = 0.1, 0.15
 """Part of the top of the colours from which a place counts as stressed, and part of the body's size below which such places are a
 speck in its picture."""
@@ -132,7 +132,7 @@ def _in_words(condition: AnyCondition) -> str:
 def _draw_rigid(axis: Axes, touching: TouchingBody) -> None:
     """A rigid body in the plane, filled from its signed distance within the picture."""
     (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
-    x, y = np.meshgrid(np.linspace(left, right, GRID), np.linspace(bottom, top, GRID))
+    x, y = np.meshgrid(np.linspace(left, right, TRACED), np.linspace(bottom, top, TRACED))
     body = Turned.of(touching.body, touching.axis)
     points = 1e-3 * np.array([x.ravel(), y.ravel()]) - np.array(touching.place)[:, None]
     distance = body.signed_distance(points)[0].reshape(x.shape)

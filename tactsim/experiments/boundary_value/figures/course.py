@@ -7,13 +7,12 @@ from matplotlib.axes import Axes
 
 from tactsim.array import Array
 from tactsim.experiments.boundary_value.scene import BoundaryValueScene
-from tactsim.plotting.canvas import despined, scale_of, with_minus
+from tactsim.plotting.canvas import LINE_COLOURS, despined, scale_of, with_minus
 from tactsim.results import Result
 from tactsim.units import format_quantity
 
 MARKS = (".-", "s--", "^:", "d-.", "x-", "v--")
 """Marks and lines of the curves, which print in grey tells apart."""
-COLOURS = ("#1f4e79", "#b8540a", "#2e7d32", "#6a1b9a", "#b00020", "#00838f")
 ALIKE = 5e-3
 """Curves of a largest magnitude of one that differ by less are drawn as one."""
 LONGEST_LINEAR = 1e3
@@ -35,12 +34,12 @@ def draw_course(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
     if len(groups) == 1 and len({format_quantity(_most(values), scene.asked[name]) for name, values in asked.items()}) == 1:
         name = next(iter(asked))
         factor, unit = scale_of(_most(asked[name]), scene.asked[name])
-        axis.plot(time, factor * asked[name], MARKS[0], color=COLOURS[0], markersize=3, label="\n".join(asked))
+        axis.plot(time, factor * asked[name], MARKS[0], color=LINE_COLOURS[0], markersize=3, label="\n".join(asked))
         axis.set_ylabel(f"{name} in {unit}" if len(asked) == 1 else f"value in {unit}")
         if len(asked) > 1:
             axis.legend(fontsize=7)
     else:
-        for group, style, colour in zip(groups, MARKS, COLOURS, strict=False):
+        for group, style, colour in zip(groups, MARKS, LINE_COLOURS, strict=False):
             label = "\n".join(f"{name} / {format_quantity(_most(values), scene.asked[name])}" for name, values in group.items())
             axis.plot(time, _normalized(next(iter(group.values()))), style, color=colour, markersize=3, label=label)
         axis.set_ylabel("quantity / its largest magnitude")

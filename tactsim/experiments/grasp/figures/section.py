@@ -14,7 +14,16 @@ from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, TAXEL_COLOUR, drawn_millimetre, ending, inclusions_of, moment_of
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.plotting.canvas import PRESSURE_COLOURS, REGION_COLOURS, despined, extension, robust_limits, scale_of, with_minus
+from tactsim.plotting.canvas import (
+    PRESSURE_COLOURS,
+    REGION_COLOURS,
+    TRACED,
+    despined,
+    extension,
+    robust_limits,
+    scale_of,
+    with_minus,
+)
 from tactsim.plotting.plane_cut import PlaneCut, deformed, plane_cut
 from tactsim.results import FieldFrame, Result
 from tactsim.results.fields import CORNER_PRESSURE, PRESSURE
@@ -31,8 +40,6 @@ TAXEL_SHOWN = 0.55
 """Height of a taxel's mark in the jaw's face, in `drawn_millimetre`."""
 LONGER = 1.2
 """An inclusion is cut across the horizontal axis along which it is this much longer than along the other."""
-GRID = 250
-"""Points per direction on which a jaw is traced."""
 MOST_NAMED = 12
 """Taxels along a cut of which each is named; of more, every so many."""
 INCLUSION_COLOUR = "#000000"
@@ -168,7 +175,7 @@ def _draw_jaw(
     """
     jaw, place, across = scene.jaws[side], scene.place(side), plane.across
     middle, end = sum(limits[1]) / 2, limits[1][1 if side == "upper" else 0]
-    along, height = np.meshgrid(np.linspace(*limits[0], GRID), np.linspace(min(middle, end), max(middle, end), GRID))
+    along, height = np.meshgrid(np.linspace(*limits[0], TRACED), np.linspace(min(middle, end), max(middle, end), TRACED))
     points = np.empty((3, along.size))
     points[1 - across], points[2], points[across] = 1e-3 * along.ravel(), 1e-3 * height.ravel(), plane.level
     distance = jaw.signed_distance(points - place[:, None])[0].reshape(along.shape)

@@ -19,7 +19,7 @@ from tactsim.experiments.indentation.figures.section import (
     pressure_scale,
 )
 from tactsim.experiments.indentation.scene import PressedBodyScene
-from tactsim.plotting.canvas import PRESSURE_COLOURS, despined
+from tactsim.plotting.canvas import PRESSURE_COLOURS, TRACED, despined
 from tactsim.results import Result
 from tactsim.results.fields import PRESSURE
 from tactsim.units import format_quantity
@@ -27,8 +27,6 @@ from tactsim.units import format_quantity
 SHOWN_RADII = 2.4
 """Half width of the picture in radii of the body: farther out the tissue is at rest."""
 SENSOR_COLOUR = "#d62728"
-GRID = 250
-"""Points per direction on which a body's outline is traced."""
 WORDS = 0.22
 """Height of the three lines above the inner sensor, over half the width of the picture."""
 
@@ -85,7 +83,7 @@ class PressedSection:
     def _draw_body(self, axis: Axes) -> None:
         """The body filled from its signed distance; an axisymmetric one is traced from the axis on, and mirrored."""
         mirrored, (left, right) = self.turn is None, self.limits[0]
-        x, z = np.meshgrid(np.linspace(0.0 if mirrored else left, right, GRID), np.linspace(*self.limits[1], GRID))
+        x, z = np.meshgrid(np.linspace(0.0 if mirrored else left, right, TRACED), np.linspace(*self.limits[1], TRACED))
         points = np.zeros((2 if mirrored else 3, x.size))
         points[self.along], points[-1] = x.ravel(), z.ravel() - self.height
         distance = self.scene.body.signed_distance(points * 1e-3)[0].reshape(x.shape)

@@ -11,10 +11,9 @@ from matplotlib.figure import Figure
 
 from tactsim.array import Array
 from tactsim.experiments.localization.scene import ConfusionScene
-from tactsim.plotting.canvas import SingleFigure, png, result_figure, titled_figure
+from tactsim.plotting.canvas import SMALL_TITLE, SingleFigure, png, result_figure, titled_figure
 from tactsim.results import Result
 
-TITLE_SIZE = 10.5
 DARK = 0.6
 """Share from which a cell is so dark that its number is white."""
 
@@ -31,7 +30,7 @@ class ConfusionFigures(SingleFigure):
     def figure(self, result: Result) -> Figure:
         """The table, with the share of what was recognised in its title."""
         counts, classes = np.array(result.quantities["confusion"].value), result.scene_as(ConfusionScene).classes
-        with result_figure(result, _size(counts), "Confusion table", remark=result.reason, title_size=TITLE_SIZE) as figure:
+        with result_figure(result, _size(counts), "Confusion table", remark=result.reason, title_size=SMALL_TITLE) as figure:
             _draw(figure.subplots(), counts, classes)
         return figure
 
@@ -39,7 +38,7 @@ class ConfusionFigures(SingleFigure):
 def confusion_png(table: Sequence[Sequence[int]], classes: Sequence[str], title: str) -> bytes:
     """The same as PNG for a table (true, estimated) that is no result."""
     counts = np.array(table)
-    with titled_figure(*_size(counts), title, title_size=TITLE_SIZE) as figure:
+    with titled_figure(*_size(counts), title, title_size=SMALL_TITLE) as figure:
         _draw(figure.subplots(), counts, classes)
     return png(figure)
 
