@@ -96,10 +96,11 @@ def report(
         files = {name: text.encode() for name, text in texts.items()}
         remark = ""
         if form != "none":
-            from tactsim.cli.figures.comparison import drawn_comparison, has_figure
+            from tactsim.cli.figures.comparison import drawn_comparison
 
-            if has_figure(results, comparison):
-                files[f"comparison.{form}"] = drawn_comparison(results, comparison, form)
+            figure = drawn_comparison(results, comparison, form)
+            if figure is not None:
+                files[f"comparison.{form}"] = figure
             else:
                 remark = "; no figure, for no two of the results share a number"
         write_files(files, out)

@@ -18,7 +18,6 @@ from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     from tactsim.dataset.ranking.samples import JudgedSamples
-    from tactsim.interfaces.both_jaws import Source
 
 NAME = "data"
 SUMMARY = "check, describe or export a data set, judge estimators on it"
@@ -179,12 +178,10 @@ def _refuse_file(path: Path) -> None:
 
 def _samples(arguments: argparse.Namespace, split: list[str] | None = None) -> JudgedSamples:
     """The samples that are judged or trained on, as the options say."""
-    from tactsim.dataset.ranking.samples import judged_samples, stored_experiment
-    from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE
+    from tactsim.dataset.ranking.samples import judged_samples
 
     references, noise = _references(arguments), _noise(arguments)
-    source: Source = arguments.readings or (READ_FORCE if stored_experiment(arguments.store).readout else TAXEL_FORCE)
-    chosen = arguments.split or split
+    chosen, source = arguments.split or split, arguments.readings
     return judged_samples(arguments.store, references, split=chosen, source=source, noise=noise)
 
 

@@ -5,14 +5,15 @@ from __future__ import annotations
 import itertools
 import textwrap
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure, FigureBase
 
-from tactsim.cli.figures.compared_maps import draw_maps, taxel_maps
+from tactsim.cli.figures.compared_maps import TaxelMaps, draw_maps, taxel_maps
 from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
@@ -38,35 +39,58 @@ MOST_NAMED, TITLE_WIDTH = 4, 66
 """Parts in which the cases differ that the title names, and characters of its lines."""
 
 
+@dataclass(frozen=True)
+class Shared:
+    """What several results have in common that a figure shows: values of their histories, or numbers, and maps of taxels."""
+
+    pair: tuple[str, str] | None
+    columns: list[Column]
+    maps: TaxelMaps | None
+
+    @classmethod
+    def of(cls, results: Mapping[str, Result], comparison: Comparison) -> Self:
+        """Values of the histories before numbers."""
+        pair, maps = next((pair for pair in CURVES if _have(results, pair)), None), taxel_maps(results)
+        return cls(pair, [] if pair else _bars(comparison, maps is not None), maps)
+
+    @property
+    def nothing(self) -> bool:
+        """Whether there is nothing to show."""
+        return self.pair is None and self.maps is None and not self.columns
+
+
 def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> Figure:
     """A curve for each result, or bars of numbers where there is no history in common; below them what taxels read."""
     with styled():
-        pair = next((pair for pair in CURVES if _have(results, pair)), None)
-        maps = taxel_maps(results)
-        columns = [] if pair else _bars(comparison, maps is not None)
-        width, height = 6.4, 4.2 if pair else 1.2 + (0.5 + 0.3 * len(results)) * max(1, len(columns))
-        if maps is None:
-            figure = new_figure(width, height)
-            parts: Any = [figure]
-        else:
-            height = 3.4 if pair else height
-            figure = new_figure(max(width, maps.size[0]), height + maps.size[1])
-            parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(height, maps.size[1]))[:, 0]
-        if pair is not None:
-            _draw_curves(parts[0].subplots(), results, pair)
-        else:
-            _draw_bars(parts[0], comparison, columns)
-        if maps is not None:
-            draw_maps(parts[1], maps, [_labelled(name, result) for name, result in results.items()])
-        first, *rest = _title(comparison)
-        entitle(figure, first, " ".join(rest))
+        return _drawn(results, comparison, Shared.of(results, comparison))
+
+
+def drawn_comparison(results: Mapping[str, Result], comparison: Comparison, form: str = "png") -> bytes | None:
+    """`comparison_figure` as PNG, SVG or PDF; None if the results share nothing that it shows."""
+    with styled():
+        shared = Shared.of(results, comparison)
+        return None if shared.nothing else encoded(_drawn(results, comparison, shared), form)
+
+
+def _drawn(results: Mapping[str, Result], comparison: Comparison, shared: Shared) -> Figure:
+    pair, maps = shared.pair, shared.maps
+    width, height = 6.4, 4.2 if pair else 1.2 + (0.5 + 0.3 * len(results)) * max(1, len(shared.columns))
+    if maps is None:
+        figure = new_figure(width, height)
+        parts: Any = [figure]
+    else:
+        height = 3.4 if pair else height
+        figure = new_figure(max(width, maps.size[0]), height + maps.size[1])
+        parts = figure.subfigures(2, 1, squeeze=False, height_ratios=(height, maps.size[1]))[:, 0]
+    if pair is not None:
+        _draw_curves(parts[0].subplots(), results, pair)
+    else:
+        _draw_bars(parts[0], comparison, shared.columns)
+    if maps is not None:
+        draw_maps(parts[1], maps, [_labelled(name, result) for name, result in results.items()])
+    first, *rest = _title(comparison)
+    entitle(figure, first, " ".join(rest))
     return figure
-
-
-def has_figure(results: Mapping[str, Result], comparison: Comparison) -> bool:
-    """Whether the results share anything that a figure shows: a history, maps of taxels or a number."""
-    common = any(_have(results, pair) for pair in CURVES) or taxel_maps(results) is not None
-    return common or bool(_bars(comparison, above_maps=False))
 
 
 def _bars(comparison: Comparison, above_maps: bool) -> list[Column]:
@@ -93,11 +117,6 @@ def _draw_bars(figure: FigureBase, comparison: Comparison, columns: Sequence[Col
         axis.invert_yaxis()
         axis.set_xlabel(column.head)
         despined(axis)
-
-
-def drawn_comparison(results: Mapping[str, Result], comparison: Comparison, form: str = "png") -> bytes:
-    """`comparison_figure` as PNG, SVG or PDF."""
-    return encoded(comparison_figure(results, comparison), form)
 
 
 def _title(comparison: Comparison) -> list[str]:

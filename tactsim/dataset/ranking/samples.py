@@ -16,6 +16,7 @@ from tactsim.dataset.ranking.sensing import Sensing, noises
 from tactsim.dataset.sampling.drawing import drawn_specimen, stored_cases
 from tactsim.dataset.sampling.layout import TRIED_SPECIMENS
 from tactsim.dataset.sampling.stored import UNUSABLE, stored_sweep
+from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError, StorageError
@@ -123,11 +124,12 @@ def judged_samples(
     reference: Sequence[str],
     *,
     split: str | Sequence[str] | None = None,
-    source: Source = READ_FORCE,
+    source: Source | None = READ_FORCE,
     noise: float | None = None,
 ) -> JudgedSamples:
     """The samples of a store, or of one of its parts, that estimators can be judged on.
 
+    ``source`` of None is what sensors read if the store has it, else what the solution has.
     ``noise`` in N is added to what they read. ``read_force`` has that of each sample's own electronics too, estimated by repeated
     readings of the reference; for ``taxel_force`` the default is what rounding to 0.1 N does (thesis 6.2).
 
@@ -139,7 +141,9 @@ def judged_samples(
         If it has no grasp that is done, other inclusions than one ball, no such readings, another block or matrix than the
         reference, closes further, or opens again before its end.
     """
-    data, experiment = load(store, split=split, verified=True), stored_experiment(store)
+    data, sweep = load(store, split=split, verified=True), stored_sweep(Store.open(store))
+    experiment = _first_grasp(sweep, Path(store).name)
+    source = source or (READ_FORCE if experiment.readout else TAXEL_FORCE)
     _check_store(data, source, Path(store).name, split)
     refuse_reopened(experiment, Path(store).name)
     plain = PlainGrasp.of_results(reference)
@@ -147,7 +151,7 @@ def judged_samples(
     forces = np.asarray(data[source].values[:, -1], dtype=float)
     truths = _truths(data, float(experiment.block.size[2]))
     plain.at(np.array([truth.closing for truth in truths]))
-    sensing = _sensing(store, data, experiment) if source == READ_FORCE else ()
+    sensing = _sensing(sweep, data, experiment, Path(store).name) if source == READ_FORCE else ()
     electronic = noises(sensing, plain) if sensing else np.zeros(len(truths))
     if noise is None and sensing and (electronic < LEAST_NOISE * np.abs(forces).max()).any():
         raise InputError(
@@ -159,12 +163,11 @@ def judged_samples(
     return JudgedSamples(truths, forces, plain, source, np.hypot(electronic, given), electronic, sensing, cases)
 
 
-def _sensing(store: str | Path, data: xarray.Dataset, experiment: Grasp) -> tuple[Sensing, ...]:
+def _sensing(sweep: Sweep, data: xarray.Dataset, experiment: Grasp, name: str) -> tuple[Sensing, ...]:
     """How each sample was read: as the ``experiment`` of one, or by its own case where sensors or steps vary."""
-    sweep = stored_sweep(Store.open(store))
     grasps = [experiment] * data.sizes["sample"]
     if any(place.path[1:2] in SENSED and place.path[-1] != SEED for place in sweep.places):
-        cases = stored_cases(sweep, data["sample"].values, data["case_id"].values, Path(store).name)
+        cases = stored_cases(sweep, data["sample"].values, data["case_id"].values, name)
         grasps = [case.experiment for case in cases]  # type: ignore[misc]  # of one kind, as the first one is
     durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
     return tuple(Sensing.of(grasp, float(duration)) for grasp, duration in zip(grasps, durations, strict=True))
@@ -180,16 +183,17 @@ def stored_experiment(store: str | Path) -> Grasp:
     StorageError
         If it is no data set, or its case cannot be read.
     """
-    sweep = stored_sweep(Store.open(store))
+    return _first_grasp(stored_sweep(Store.open(store)), Path(store).name)
+
+
+def _first_grasp(sweep: Sweep, name: str) -> Grasp:
     try:
         drawn = (drawn_specimen(sweep, specimen)[0] for specimen in range(TRIED_SPECIMENS))
         case = next((one.case for one in drawn if one.case is not None), None)
     except UNUSABLE as error:
-        raise StorageError(f"{Path(store).name}: the case in it cannot be read by this tactsim: {one_line(error)}") from None
+        raise StorageError(f"{name}: the case in it cannot be read by this tactsim: {one_line(error)}") from None
     if case is None or not isinstance(case.experiment, Grasp):
-        raise InputError(
-            f"{Path(store).name} holds samples of {sweep.kind or 'no kind'}; needed: grasps, as of cases/sweep_lumps.yaml"
-        )
+        raise InputError(f"{name} holds samples of {sweep.kind or 'no kind'}; needed: grasps, as of cases/sweep_lumps.yaml")
     return case.experiment
 
 

@@ -13,6 +13,7 @@ from scenes import grasp_scene
 
 from tactsim.cli import main
 from tactsim.cli.command_compare import _name_of, _unit_of, report
+from tactsim.cli.figures import comparison
 from tactsim.cli.figures.comparison import FEW_STEPS, comparison_figure
 from tactsim.errors import InputError
 from tactsim.experiments.annulus.closed_form import ClosedForm
@@ -388,3 +389,13 @@ def test_no_figure_is_written_of_results_that_share_nothing(tmp_path: Path, caps
     assert not (tmp_path / "out" / "comparison.png").exists()
     assert (tmp_path / "out" / "comparison.csv").exists()
     assert "no figure, for no two of the results share a number" in capsys.readouterr().out
+
+
+def test_the_maps_of_the_taxels_are_collected_once(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """They were for whether there is a figure, and for the figure."""
+    counted: list[int] = []
+    collected = comparison.taxel_maps
+    monkeypatch.setattr(comparison, "taxel_maps", lambda results: counted.append(len(results)) or collected(results))
+    report({name: grasped(1, [[force]]) for name, force in (("one", 0.1), ("two", 0.2))}, tmp_path / "out")
+    assert (tmp_path / "out" / "comparison.png").exists()
+    assert counted == [2]

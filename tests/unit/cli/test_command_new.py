@@ -8,7 +8,7 @@ from pathlib import Path
 
 import pytest
 
-from tactsim.case import SCHEMA, Case, load_case
+from tactsim.case import SCHEMA, Case, load_case, yaml_reading
 from tactsim.case.model import experiment_kinds
 from tactsim.case.template import template
 from tactsim.cli import main
@@ -84,6 +84,15 @@ def test_everything_that_ships_is_listed_with_a_line(capsys: pytest.CaptureFixtu
     assert [line.split()[0] for line in lines] == list(experiment_kinds())
     assert all(len(line.split()) > 3 for line in lines)
     assert main(["list", "knids"]) == 2
+
+
+def test_each_shipped_file_is_read_once_for_all_sections(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Cases and sweeps stand in one folder, which was read for each of the two sections."""
+    seen: list[str] = []
+    read = yaml_reading.first_values
+    monkeypatch.setattr(yaml_reading, "first_values", lambda text, *wanted: seen.append(text) or read(text, *wanted))
+    assert main(["list"]) == 0
+    assert len(seen) == len(set(seen)) > len(list(shipped_cases()))
 
 
 @pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])

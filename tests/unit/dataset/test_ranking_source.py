@@ -25,6 +25,7 @@ from scenes import grasp_scene
 from sweeps import small_store
 
 from tactsim.cli import main
+from tactsim.dataset.ranking import samples as samples_module
 from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.dataset.ranking.samples import added_noise, judged_samples
 from tactsim.dataset.store.opening import Store
@@ -92,12 +93,19 @@ def test_the_noise_of_readings_is_as_large_as_stated() -> None:
     assert not np.array_equal(next(iter(samples.readings(multiple=4.0, seed=2))).forces, readings[0].forces)
 
 
-def test_read_forces_are_held_against_a_reference_read_alike(tmp_path: Path, plain: str) -> None:
+def test_read_forces_are_held_against_a_reference_read_alike(tmp_path: Path, plain: str, monkeypatch: pytest.MonkeyPatch) -> None:
     place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", READOUT))
     samples = judged_samples(place, [plain], source="read_force")
     assert (samples.own_noise == samples.noise).all()
     assert samples.noise == pytest.approx(np.full(40, samples.noise[0])), "sensors of one kind"
     assert samples.references.shape == samples.forces.shape
+    parsed: list[Store] = []
+    read = samples_module.stored_sweep
+    monkeypatch.setattr(samples_module, "stored_sweep", lambda store: parsed.append(store) or read(store))
+    by_default = judged_samples(place, [plain], source=None)
+    assert len(parsed) == 1, "a sweep of many draws takes long to read"
+    assert by_default.source == "read_force"
+    np.testing.assert_array_equal(by_default.noise, samples.noise)
     louder = judged_samples(place, [plain], source="read_force", noise=5e-3)
     assert louder.noise == pytest.approx(np.hypot(5e-3, samples.noise))
     assert added_noise(louder.noise, louder.own_noise, 1.0) == pytest.approx(5e-3)
