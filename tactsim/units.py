@@ -155,7 +155,7 @@ def compact_unit(value: float, unit: str) -> str:
     """The unit with the SI prefix in which a value in SI reads well, such as ``kPa``."""
     if not value or not math.isfinite(value):
         return unit
-    return compact(value, unit, "C")[1].replace("**", "^")
+    return compact(value, unit, "P")[1]
 
 
 def format_quantity(value: float, unit: str) -> str:

@@ -71,8 +71,12 @@ def load_case(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -
     return validated_case(*read_document(path, overrides))
 
 
-def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = ()) -> tuple[Document, Place]:
+def read_document(
+    path: str | Path | Mapping[str, Any], overrides: Overrides = (), *, option: str = "override"
+) -> tuple[Document, Place]:
     """What a case says after the overrides, and how messages name its places; nothing is validated yet.
+
+    An override is called as the ``option`` of the command that it was given to.
 
     Raises
     ------
@@ -95,7 +99,6 @@ def read_document(path: str | Path | Mapping[str, Any], overrides: Overrides = (
     ):
         needed = "{'experiment.recess': '0.4 mm'}, or texts such as 'experiment.recess=0.4 mm'"
         raise InputError(f"overrides: {shown(overrides)}; needed: {needed}")
-    option = "override" if isinstance(overrides, Mapping) else "--set"
     given = overrides.items() if isinstance(overrides, Mapping) else ((override, None) for override in overrides)
     named = ((str(override), value) for override, value in given)
     for override, value in named:
@@ -234,7 +237,7 @@ def _choices() -> str:
 
 
 def place_in(path: str | Path, overridden: Mapping[KeyPath, str]) -> Place:
-    """Names the place of a problem: the override that set the value, such as ``--set experiment.recess``, or file and line."""
+    """Names the place of a problem: the override that set the value, such as ``override experiment.recess``, or file and line."""
 
     def place(problem: Problem) -> str:
         for length in range(len(problem.path), 0, -1):

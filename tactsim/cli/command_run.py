@@ -128,7 +128,7 @@ def _refuse_early(arguments: argparse.Namespace, places: list[Path]) -> None:
 
     for path in arguments.cases:
         with collected_warnings():  # its turn reports them
-            validated_case(*read_document(path, arguments.set))
+            validated_case(*read_document(path, arguments.set, option="--set"))
     check_replaceable(places[0], _may_replace(arguments), *places[1:])
     refuse_others(places[-1], TABLE_FILE, "comparison")
 
@@ -159,7 +159,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
 
     seconds = _time_limit(arguments.time_limit)
     with interruptible() as interruption:
-        document, place = read_document(path, arguments.set)
+        document, place = read_document(path, arguments.set, option="--set")
         with collected_warnings() as read:
             case = validated_case(document, place)
             listed = check_inputs(case, document, place)

@@ -82,7 +82,7 @@ def run(arguments: argparse.Namespace) -> int:
         if given is not None and given < 1:
             raise InputError(f"--{name} {given} is out of range; must be at least 1")
     with interruptible() as interruption:
-        sweep = load_sweep(arguments.case, tuple(arguments.set), arguments.samples)
+        sweep = load_sweep(arguments.case, tuple(arguments.set), arguments.samples, option="--set")
         _check_inputs(sweep)
         executor = _executor(sweep, arguments)  # before anything is written: a scheduler may not answer
         changes = {"resume": arguments.resume, "accept_changes": arguments.accept_changed_code}

@@ -207,7 +207,7 @@ class Faults:
     constant: dict[str, list[int]] = field(default_factory=dict)
     equal: list[int] = field(default_factory=list)
     uncoded: list[int] = field(default_factory=list)
-    seen: set[bytes] = field(default_factory=set)
+    seen: dict[bytes, str] = field(default_factory=dict)
 
 
 def leaks(store: Store, status: Array) -> Iterator[Finding]:
@@ -264,8 +264,8 @@ def _look(read: ChunkRead, layout: Layout, faults: Faults, codes: int) -> None:
             if _may_not_rest(variable) and np.ptp(values) == 0:
                 faults.constant.setdefault(variable.name, []).append(number)
         key = b"".join(np.ascontiguousarray(sample[variable.name]).tobytes() for variable in readings)
-        faults.equal += [number] if key in faults.seen else []
-        faults.seen.add(key)
+        case = str(sample.get("case_id", number))
+        faults.equal += [number] if faults.seen.setdefault(key, case) != case else []  # of one case `leaks` tells
 
 
 def _may_not_rest(variable: Variable) -> bool:

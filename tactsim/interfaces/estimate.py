@@ -68,9 +68,9 @@ class EstimatedInclusion:
 
     def __post_init__(self) -> None:
         if np.shape(self.center) != (3,):
-            raise InvalidQuantity(f"an estimated center of the shape {np.shape(self.center)}; needed: (x, y, z) in m")
+            raise InvalidQuantity(f"an estimated centre of the shape {np.shape(self.center)}; needed: (x, y, z) in m")
         if not np.isfinite(self.center).all():
-            raise InvalidQuantity(f"an estimated center {self.center} m is not finite")
+            raise InvalidQuantity(f"an estimated centre {self.center} m is not finite")
         if self.radius is not None and not (np.isfinite(self.radius) and self.radius > 0):
             raise InvalidQuantity(f"an estimated radius {self.radius} m; allowed: finite and positive, or none")
         if self.covariance is None:

@@ -13,7 +13,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, Self, TypeVar, final
 
-from tactsim.deadline import TOO_LONG, allowed_seconds, check_time, time_limit
+from tactsim.deadline import allowed_seconds, check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished, shown
 from tactsim.interfaces.history_units import KindWithHistory
 from tactsim.interfaces.seeds import seeds_in
@@ -66,14 +66,14 @@ class Course:
     findings : gives what was accepted until now; called once, after the steps have ended for whatever reason
     kept : what an interruption leaves, in words
     setup_is_timed : whether the time that `Experiment.begin` took is reported beside the total
-    if_slow : behind the reason of a run whose time did not suffice: what takes less of it
+    advice : what stands behind the reason of a run without a way on: what leads on, or takes less time
     """
 
     steps: Iterable[StepRecord]
     findings: Callable[[], Findings]
     kept: str = ACCEPTED_STEPS
     setup_is_timed: bool = False
-    if_slow: str = ""
+    advice: Callable[[Unfinished], str] = field(default=lambda error: "")
 
     @classmethod
     def computed(cls, findings: Findings) -> Self:
@@ -228,7 +228,7 @@ def _ended_early(course: Course, progress: Progress | None) -> tuple[Status, str
                 progress(step)
             check_time()
     except Unfinished as error:
-        return Status.FAILED, failure(error) + (course.if_slow if str(error).startswith(TOO_LONG) else "")
+        return Status.FAILED, failure(error) + course.advice(error)
     except MemoryError:
         return Status.FAILED, NO_MEMORY
     except KeyboardInterrupt:

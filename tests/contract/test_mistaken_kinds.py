@@ -166,7 +166,7 @@ class Answer:
     [
         (None, "Answer returned a NoneType; needed: an Estimate"),
         (lambda: Estimate(True, (EstimatedInclusion("sphere", (20.0, 20.0, 10.0)),), "in mm"), "far from the block"),
-        (lambda: Estimate(True, (EstimatedInclusion("sphere", (20e-3, 20e-3)),), "flat"), r"shape \(2,\)"),  # type: ignore[arg-type]
+        (lambda: Estimate(True, (EstimatedInclusion("sphere", (20e-3, 20e-3)),), "flat"), r"centre of the shape \(2,\)"),  # type: ignore[arg-type]
     ],
 )
 def test_an_estimate_in_mm_or_of_nothing_is_refused(answer: Any, words: str) -> None:

@@ -14,7 +14,7 @@ from tactsim.errors import InvalidQuantity, Refused
 from tactsim.results.quantity import Quantity
 from tactsim.unit_conversion import _registry, compact, factor_to
 from tactsim.unit_definitions import PLAIN, PREFIXED, SHOWN_PREFIXES, UNPREFIXED, _powers_of_ten, prefix_power, single_words
-from tactsim.units import Length, check_unit, compact_unit, format_quantity, is_unit, parse_quantity, written_quantity
+from tactsim.units import Length, check_unit, compact_unit, conversion, format_quantity, is_unit, parse_quantity, written_quantity
 
 
 @pytest.mark.parametrize(
@@ -87,7 +87,9 @@ def test_values_are_printed_to_be_read() -> None:
     assert format_quantity(43150.0, "1") == "43150"
     assert format_quantity(3.0854, "N m") == "3.0854 N·m"
     assert format_quantity(0.004, "N m") == "4 mN·m"
-    assert compact_unit(0.004, "N m") == "mN*m"
+    assert compact_unit(0.004, "N m") == "mN·m", "as beside a number"
+    assert compact_unit(3e6, "Pa s/N") == format_quantity(3e6, "Pa s/N").split()[1] == "MPa·s/N"
+    assert conversion("Pa s/N", "MPa·s/N") == 1e-6
 
 
 @pytest.mark.parametrize("unit", ["m", "Pa", "m^2", "N", "rad", "Pa*s", "kg/m^3", "Pa/N"])

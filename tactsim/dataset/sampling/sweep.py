@@ -98,7 +98,9 @@ def deciding(content: dict[str, Any]) -> dict[str, Any]:
     return {key: value for key, value in content.items() if key != "title"} | {SECTION: section}
 
 
-def load_sweep(path: str | FilePath, overrides: tuple[str, ...] = (), samples: int | None = None) -> Sweep:
+def load_sweep(
+    path: str | FilePath, overrides: tuple[str, ...] = (), samples: int | None = None, *, option: str = "override"
+) -> Sweep:
     """The sweep in a file, after the overrides ``path.to.key=value``; ``samples`` replaces that of the file.
 
     Raises
@@ -108,7 +110,7 @@ def load_sweep(path: str | FilePath, overrides: tuple[str, ...] = (), samples: i
     StorageError
         If the file is missing or cannot be read.
     """
-    document, where = read_document(path, overrides)
+    document, where = read_document(path, overrides, option=option)
     return _sweep(document, where, samples)
 
 

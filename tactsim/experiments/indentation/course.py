@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 
 from tactsim.contact.penalty import Regularisation
-from tactsim.errors import Unfinished
+from tactsim.deadline import TOO_LONG
+from tactsim.errors import Collapsed, Unfinished
 from tactsim.experiments.indentation.record import IndentationRecord
 from tactsim.experiments.indentation.setup import Displaced, IndentationSetup, Timed
 from tactsim.fem.paths.loading import Event, PathFollower
@@ -26,12 +28,14 @@ THRESHOLD_TOLERANCE = 1e-5
 """Tolerance of the displacement at the threshold, as a part of the recess."""
 SWITCH_LENGTH = 0.03
 """Length, as a part of the body's radius, over which a violated contact counts as much as the largest contact pressure."""
-TOO_LONG = 2.0
+SPLIT_LENGTH = 2.0
 """An element is split when its deformed edge is this many times longer than the size wanted there."""
 LONG = 1.3
-"""Elements this many times too long are split along with those that are ``TOO_LONG``, so that it happens rarely."""
+"""Elements this many times too long are split along with those beyond ``SPLIT_LENGTH``, so that it happens rarely."""
 LARGEST_GROWTH = 4.0
 """The mesh is not refined beyond this many times its first number of elements."""
+FINER = 2.0
+"""Factor of the mesh's refinement that is advised where an element collapsed: it led through wherever it was tried."""
 RESTART = 0.5
 """First step on a refined mesh, as a part of the last one: there is nothing yet to extrapolate."""
 PAST_PEAK = 0.95
@@ -49,8 +53,16 @@ def indentation_course(setup: IndentationSetup) -> Course:
     """The run of an indentation in any dimension, with a clock or without."""
     path, record = _begun(setup)
     steps = (record.accept(state, event=touch) for state, touch in path.states(record.adapted))
-    if_slow = setup.if_slow.format(tolerance=format_quantity(setup.tolerance, "m"))
-    return Course(steps, record.findings, setup_is_timed=True, if_slow=if_slow)
+    return Course(steps, record.findings, setup_is_timed=True, advice=partial(_advice, setup))
+
+
+def _advice(setup: IndentationSetup, error: Unfinished) -> str:
+    """The keys of the case by which a run that found no way on may come to its end."""
+    if isinstance(error, Collapsed):
+        return f"; smaller elements may lead on: mesh.refinement: {FINER * setup.mesh.refinement:g}"
+    if str(error).startswith(TOO_LONG):
+        return setup.if_slow.format(tolerance=format_quantity(setup.tolerance, "m"))
+    return ""
 
 
 def unloaded_indentation(setup: IndentationSetup) -> Findings:
@@ -150,7 +162,7 @@ class DisplacementPath:
         model = self.model
         if not (self._setup.mesh.adaptive and isinstance(model, SectionModel)) or len(model.mesh.elements) >= self._most:
             return None
-        return model if len(model.too_coarse(state, self._size, TOO_LONG)) else None
+        return model if len(model.too_coarse(state, self._size, SPLIT_LENGTH)) else None
 
     def _refined(self, model: SectionModel, state: ContactEquilibrium, adapted: Adapted) -> ContactEquilibrium:
         while len(marked := model.too_coarse(state, self._size, LONG)) and len(model.mesh.elements) < self._most:

@@ -124,16 +124,16 @@ def test_the_missing_experiment_is_told(case_file: Path) -> None:
 @pytest.mark.parametrize(
     ("override", "expected"),
     [
-        ("experiment.frction=1", "--set experiment.frction: unknown key (did you mean 'friction'?); allowed: kind, "),
-        ("experiment.solver.tolerance=1", "--set experiment.solver.tolerance: experiment.solver: unknown key; allowed: "),
-        ("experiment.specimen.layers=null", "--set experiment.specimen.layers: null is not allowed; expected a list"),
-        ("experiment.specimen.layers.0=1", "--set experiment.specimen.layers.0: 1 is not allowed; expected a mapping with "),
-        ("experiment.specimen.layers.9.thickness=1 mm", "--set experiment.specimen.layers.9.thickness=1 mm: experiment."),
-        ("experiment.friction", "--set experiment.friction: 'experiment.friction' is not of the form path.to.key=value"),
-        ("friction=1", "--set friction: unknown key (did you mean 'experiment.friction'?); allowed: schema, title, "),
-        ("experiment=null", "--set experiment: null is not a mapping with a 'kind'; choices: pretence"),
-        ("experiment.kind=x", "--set experiment.kind: unknown kind 'x'; choices: pretence"),
-        ("schema=tactsim/case/9", "--set schema: the version 'tactsim/case/9' is not supported"),
+        ("experiment.frction=1", "override experiment.frction: unknown key (did you mean 'friction'?); allowed: kind, "),
+        ("experiment.solver.tolerance=1", "override experiment.solver.tolerance: experiment.solver: unknown key; allowed: "),
+        ("experiment.specimen.layers=null", "override experiment.specimen.layers: null is not allowed; expected a list"),
+        ("experiment.specimen.layers.0=1", "override experiment.specimen.layers.0: 1 is not allowed; expected a mapping with "),
+        ("experiment.specimen.layers.9.thickness=1 mm", "override experiment.specimen.layers.9.thickness=1 mm: experiment."),
+        ("experiment.friction", "override experiment.friction: 'experiment.friction' is not of the form path.to.key=value"),
+        ("friction=1", "override friction: unknown key (did you mean 'experiment.friction'?); allowed: schema, title, "),
+        ("experiment=null", "override experiment: null is not a mapping with a 'kind'; choices: pretence"),
+        ("experiment.kind=x", "override experiment.kind: unknown kind 'x'; choices: pretence"),
+        ("schema=tactsim/case/9", "override schema: the version 'tactsim/case/9' is not supported"),
     ],
 )
 def test_a_fault_of_an_override_names_the_override(case_file: Path, override: str, expected: str) -> None:

@@ -83,7 +83,7 @@ def test_a_part_of_a_default_can_be_set(tmp_path):
     changed = load_case(path, ["experiment.body.inner_radius=1 mm", "experiment.contact.friction=0.2"]).experiment
     assert changed.body == plain.body.model_copy(update={"inner_radius": 1e-3})
     assert changed.contact == plain.contact.model_copy(update={"friction": 0.2})
-    with pytest.raises(CaseError, match=r"--set experiment.contact.friction: -0.1 is out of range"):
+    with pytest.raises(CaseError, match=r"override experiment.contact.friction: -0.1 is out of range"):
         load_case(path, ["experiment.contact.friction=-0.1"])
     with pytest.raises(CaseError, match=r"penetration_tolerance: '1e-30 m' is out of range; must be at least 1 pm"):
         load_case(path, ["experiment.penetration_tolerance=1e-30 m"])  # the unit of a value that may be left out

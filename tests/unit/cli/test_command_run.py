@@ -10,7 +10,9 @@ import pytest
 from pretence import PNG, Pretence
 
 from tactsim import plotting
+from tactsim.case import load_case
 from tactsim.cli import main
+from tactsim.errors import CaseError
 from tactsim.interfaces.run import Course
 from tactsim.progress import COMPILATION, Extent
 from tactsim.results import read_result
@@ -173,6 +175,8 @@ def test_a_disk_that_fills_up_still_shows_the_numbers(
 def test_a_bad_case_leaves_no_trace(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["run", "case.yaml", "--set", "experiment.friction=9"]) == 2
     assert capsys.readouterr().err == "error: --set experiment.friction: 9 is out of range; must be at most 2.0\n"
+    with pytest.raises(CaseError, match=r"^override experiment\.friction: 9 is out of range"):
+        load_case("case.yaml", ["experiment.friction=9"])  # which no command line was asked for
     assert not Path("results").exists()
 
 

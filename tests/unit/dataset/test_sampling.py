@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from sweeps import TEXT, sweep_file
 
+from tactsim.cli import main
 from tactsim.dataset.running.computing import computed
 from tactsim.dataset.sampling.drawing import design_point, drawn_specimen
 from tactsim.dataset.sampling.layout import first_case, layout_of, split_of
@@ -337,3 +338,11 @@ def test_other_shares_hold_on_the_whole() -> None:
     sweep = load_sweep("sweep_closed_form", ("sweep.splits={train: 0.64, validation: 0.13}",), 200)
     dealt = np.array([split_of(sweep, specimen, [], {}) for specimen in range(2000)])
     np.testing.assert_allclose([(dealt == part).mean() for part in range(3)], [0.64, 0.13, 0.23], atol=0.02)
+
+
+def test_a_refused_override_is_called_as_it_was_given(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """From Python it was called ``--set``."""
+    assert main(["sweep", "sweep_closed_form", "--set", "nothing", "--out", str(tmp_path / "s.zarr")]) == 2
+    assert capsys.readouterr().err.startswith("error: --set nothing: ")
+    with pytest.raises(CaseError, match=r"^override nothing: "):
+        load_sweep(CASES / "sweep_closed_form.yaml", ("nothing",))

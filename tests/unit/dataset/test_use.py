@@ -101,11 +101,12 @@ def changed(store: Store, name: str, number: int, value: object) -> None:
     summed_again(store, number)
 
 
-def copied(store: Store) -> None:
+def copied(store: Store, source: int = 2) -> None:
+    """Sample 4 with the content of another."""
     for name in ("force", "displacement", "read_force", "read_force_clean", "voltage", "voltage_clean", "time_s"):
-        store.group[name][4] = store.group[name][2]
+        store.group[name][4] = store.group[name][source]
     for name in ("largest_force", "largest_displacement", "tissue_rise_axis", "force_factor", "rise_factor"):
-        store.group[name][4] = store.group[name][2]
+        store.group[name][4] = store.group[name][source]
     summed_again(store, 4)
 
 
@@ -158,7 +159,10 @@ def test_equal_entries_are_suspected_unless_they_may_mirror_each_other(
 def test_the_same_case_twice_is_found(store: Path) -> None:
     opened = Store.open(store, writing=True)
     changed(opened, "case_id", 3, opened.read("case_id")[4])
-    assert [finding.kind for finding in check(store).findings] == ["duplicate"]
+    (finding,) = check(store).findings
+    assert (finding.kind, finding.samples) == ("duplicate", (3, 4))
+    copied(opened, source=3)
+    assert check(store).findings == (finding,), "one case has one answer: its readings are no second finding"
 
 
 def test_a_byte_changed_on_the_disk_is_found(store: Path) -> None:

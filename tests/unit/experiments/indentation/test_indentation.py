@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 import pytest
 
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
-from tactsim.errors import CaseError
-from tactsim.experiments.indentation.course import DisplacementPath
+from tactsim.errors import CaseError, Collapsed
+from tactsim.experiments.indentation.course import DisplacementPath, HistoryPath
 from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.indentation import Indentation
+from tactsim.experiments.indentation.indentation_3d import Indentation3D
 from tactsim.experiments.indentation.record import energy_assumptions
 from tactsim.experiments.indentation.scene import IndentationScene
+from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Layer, Specimen
@@ -217,3 +221,24 @@ def test_a_run_to_the_threshold_is_as_far_as_the_tissue_has_risen() -> None:
     assert example.extent == Extent("tissue_rise", example.recess)
     further = example.model_copy(update={"stop": "displacement"})
     assert further.extent == Extent("displacement", example.displacement)
+
+
+@pytest.mark.parametrize("kind", [Indentation, TimedIndentation, Indentation3D])
+def test_a_run_whose_element_collapsed_names_the_key_of_the_mesh(
+    kind: type[Indentation | TimedIndentation | Indentation3D], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It said that the mesh is too coarse, and left its reader to look for the key."""
+
+    def states(self: object, adapted: object) -> Iterator[None]:
+        yield from ()
+        raise Collapsed("no step leads on")
+
+    for path in (DisplacementPath, HistoryPath):
+        monkeypatch.setattr(path, "states", states)
+    reasons = []
+    for refinement in (1.0, 1.5):
+        example = kind.example()
+        finer = example.model_copy(update={"mesh": example.mesh.model_copy(update={"refinement": refinement})})
+        reasons.append(finer.run(None).reason)
+    stopped = "stopped converging: no step leads on; smaller elements may lead on: mesh.refinement:"
+    assert reasons == [f"{stopped} 2", f"{stopped} 3"]
