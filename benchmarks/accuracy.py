@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 import tactsim as ts
+from tactsim.interfaces.taxel_layout import JAWS
 
 CASES = Path(__file__).parents[1] / "cases"
 REFINED = 3.0
@@ -25,7 +26,7 @@ def measure() -> dict[str, float]:
         _run("annulus_icf", changes)["threshold_pressure"].value for changes in ({}, {"experiment.mesh.refinement": REFINED})
     ]
     grasps = [_run("grasp_lump_icf", changes) for changes in ({}, {"experiment.mesh": FINER})]
-    usual, fine = (np.array([grasp[f"taxel_force_{side}"].value for side in ("upper", "lower")]) for grasp in grasps)
+    usual, fine = (np.array([grasp[f"taxel_force_{side}"].value for side in JAWS]) for grasp in grasps)
     return {
         "threshold_pressure": pressures[0],
         "fine_threshold_pressure": pressures[1],

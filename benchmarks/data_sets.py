@@ -22,6 +22,7 @@ from tactsim.dataset.sampling.drawing import drawn_specimen
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results.result import Status
 
 CASES = Path(__file__).parents[1] / "cases"
@@ -126,7 +127,7 @@ def _taxels(number: int, fine: bool) -> np.ndarray:
     result = grasp.run()
     if result.status is not Status.CONVERGED:
         return np.array(np.nan)
-    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in JAWS])
 
 
 if __name__ == "__main__":

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.interfaces.taxel_layout import JAWS
 
 HARD = {"kind": "neo_hookean", "c10": 500e3}
 
@@ -28,4 +29,4 @@ def pressed_balls(
         }
     ).run()
     assert result.status == "converged"
-    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in JAWS])

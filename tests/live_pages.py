@@ -21,14 +21,13 @@ from tactsim.experiments.grasp.recorder import GraspRecorder
 from tactsim.experiments.grasp.scene import SimulatedGrasp, grasp_fields
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.interfaces.run import Course, Findings
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.results import Quantity, Result, Status, StepRecord, write_result
 
 SIZE = (40e-3, 40e-3, 20e-3)
 CLOSING = 1e-3
 TITLE = "A made-up <b>grasp</b>"
-SIDES = ("upper", "lower")
 SWEEP = """\
 schema: tactsim/sweep/1
 title: Made-up lumps
@@ -72,7 +71,7 @@ def made_up_grasp(forces: np.ndarray | None = None, *, lump: bool = True, title:
     layout = TaxelLayout(rows=count, columns=count, pitch=30e-3 / count, size=27e-3 / count)
     course = np.linspace(1 / steps, 1, steps)
     quantities = {"displacement": Quantity(CLOSING, "m", ""), "time": Quantity(1.0, "s", "")}
-    for jaw, side in enumerate(SIDES):
+    for jaw, side in enumerate(JAWS):
         quantities[f"taxel_force_{side}"] = Quantity(given[-1, jaw].tolist(), "N", "")
         if steps > 1:
             quantities[f"taxel_force_{side}_history"] = Quantity(given[:, jaw].tolist(), "N", "")
@@ -121,7 +120,7 @@ def made_up_store(folder: Path, *, done: int = 4) -> Path:
             raise ConvergenceError("residual <i>1</i>")
         grasp = made_up_grasp((1 + 0.1 * number) * taxel_forces(1))
         values = {"time": 1.0, "displacement": CLOSING, "reaction_force": 1.0}
-        beside = {f"{part}_force_{side}": Quantity(0.0, "N", "") for part in ("gap", "outside") for side in SIDES}
+        beside = {f"{part}_force_{side}": Quantity(0.0, "N", "") for part in ("gap", "outside") for side in JAWS}
         numbers_of = {name: Quantity(0.0, unit, "") for name, (unit, _) in GraspRecorder.quantities.items()}
         units = {"time": "s", "displacement": "m", "reaction_force": "N"}
         quantities = grasp.quantities | beside | numbers_of

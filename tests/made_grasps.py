@@ -18,7 +18,7 @@ from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import stored_variables
 from tactsim.interfaces.readings import Readings
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.lump_response import LumpResponse
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.writing import write_result
@@ -141,7 +141,7 @@ def plain_result(folder: Path, closings: np.ndarray = CLOSINGS, layout: TaxelLay
     quantities = {"displacement": Quantity(float(closings[-1]), "m", "")}
     if many:
         quantities["displacement_history"] = Quantity(closings.tolist(), "m", "")
-    for jaw, side in enumerate(("upper", "lower")):
+    for jaw, side in enumerate(JAWS):
         own = np.resize(forces[:, jaw], (len(closings), layout.rows, layout.columns))
         quantities[f"taxel_force_{side}"] = Quantity(own[-1].tolist(), "N", "")
         if many:

@@ -14,6 +14,7 @@ from sweeps import run_sweep
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, StepRecord
 
@@ -40,7 +41,7 @@ def pretended_run(experiment: Grasp, progress: None, *, time_limit: float | None
     force, noise = felt(experiment), np.random.default_rng(experiment.readout.seed).normal(0, 1e-3, (2, 3, 3))  # type: ignore[union-attr]
     units = {"time": "s", "displacement": "m", "reaction_force": "N"}
     quantities = {"readout_time": Quantity([1.0], "s", "")}
-    for jaw, side in enumerate(("upper", "lower")):
+    for jaw, side in enumerate(JAWS):
         quantities[f"taxel_force_{side}"] = Quantity(force[jaw].tolist(), "N", "")
         quantities[f"read_force_{side}_history"] = Quantity([(force + noise)[jaw].tolist()], "N", "")
         quantities[f"voltage_{side}_history"] = Quantity([(force + noise)[jaw].tolist()], "V", "")

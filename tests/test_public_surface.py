@@ -24,6 +24,7 @@ from tactsim.dataset.running import resuming
 from tactsim.dataset.running.executors import LocalWorkers
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
 from tactsim.experiments.grasp.scene import ReadGrasp
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results import FieldFrame
 from tactsim.sensors.films.film import Film
 from tactsim.shipped import shipped_cases
@@ -153,7 +154,7 @@ def test_taxels_lie_in_their_places_and_steps_at_their_times(result: ts.Result) 
     scene = ReadGrasp(
         block_size=(0.04, 0.04, 0.02),
         inclusions=(),
-        jaws={side: Jaw(width=0.05, depth=0.05) for side in ("upper", "lower")},
+        jaws={side: Jaw(width=0.05, depth=0.05) for side in JAWS},
         jaw_places={"upper": (0.022, 0.02, 0.02), "lower": (0.02, 0.021, 0.0)},
         matrix=ts.TaxelLayout(rows=2, columns=3, pitch="10 mm", size="9 mm"),
     )

@@ -19,6 +19,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.path import FIRST_PART
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.contact import contact_equilibrium, guarantee
 from tactsim.mechanics.contact.contact_equilibrium import Action
@@ -35,7 +36,7 @@ SIZE, CLOSING = (20e-3, 20e-3, 10e-3), 0.3e-3
 def grasp():
     """A block, nearly incompressible, between two jaws, and its state once they have closed."""
     block = structured_block(SIZE, (2, 2, 2), ())
-    jaws = [Jaw(width=40e-3, depth=40e-3, fillet=1e-3, side=side) for side in ("upper", "lower")]
+    jaws = [Jaw(width=40e-3, depth=40e-3, fillet=1e-3, side=side) for side in JAWS]
     material = NeoHookean(c10=1000.0, bulk_modulus=2e6)
     model = GraspModel(block.mesh, [material], block.facets, jaws=jaws, offsets=np.full((2, 2), 10e-3))
     start = model.start(Coulomb(friction=0.4), Augmentation(1e-6, softest=4e3, switch_length=5e-3, softness=1e-5))

@@ -9,7 +9,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.overhang import covered_areas, overhang_warnings
 from tactsim.experiments.grasp.symmetry import mirror_axes
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 SIZE = np.array([30e-3, 30e-3])
@@ -101,7 +101,7 @@ def test_what_mirrors_a_grasp(changes, axes):
 
 def test_a_mesh_that_shows_in_symmetric_forces_is_reported():
     result = run()
-    forces = np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+    forces = np.array([result.quantities[f"taxel_force_{side}"].value for side in JAWS])
     unlike = max(np.abs(forces - forces[:, ::-1]).max(), np.abs(forces - forces[:, :, ::-1]).max()) / forces.max()
     assert result.quantities["mirror_asymmetry"].value == pytest.approx(unlike)
     assert unlike > 0.01

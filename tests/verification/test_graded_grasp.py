@@ -9,6 +9,7 @@ import pytest
 from hard_balls import pressed_balls
 
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mesh.graded import block as graded_block_module
 from tactsim.mesh.graded import lines as graded_lines
 
@@ -43,7 +44,7 @@ def taxels(size: float, least: int) -> np.ndarray:
     finally:
         graded_lines.LEAST_ALONG, graded_lines.PAIRED = before
     assert result.status == "converged"
-    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in JAWS])
 
 
 def difference(least: int) -> float:

@@ -17,7 +17,7 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.fem.paths.loading import PathFollower, StepControl
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mesh.block import BlockMeshSettings
@@ -41,7 +41,7 @@ def grasped(*, friction, closing=1e-3, steps=4, lump=None, cells=(6, 4, 3), jaw=
         centres = mesh.nodes[mesh.elements[:, :4]].mean(axis=1)
         mesh = QuadraticMesh(mesh.nodes, mesh.elements, (np.linalg.norm(centres - lump[0], axis=1) < lump[1]).astype(int))
     facets = {"upper": facets_where(mesh, on_plane(2, SIZE[2])), "lower": facets_where(mesh, on_plane(2, 0.0))}
-    jaws = [Jaw(side=side, **jaw) for side in ("upper", "lower")]
+    jaws = [Jaw(side=side, **jaw) for side in JAWS]
     materials = [RUBBER] if lump is None else [RUBBER, HARD]
     model = GraspModel(mesh, materials, facets, jaws=jaws, offsets=np.tile(SIZE[:2] / 2, (2, 1)))
     scale = SCALE
@@ -63,7 +63,7 @@ def test_frictionless_taxels_read_the_cauchy_pressure(verification_record):
     top, bottom = (model.mesh.nodes[:, 2] == height for height in (SIZE[2], 0.0))
     stretch = 1 + (u[top, 2].mean() - u[bottom, 2].mean()) / SIZE[2]
     cauchy = 2 * (stretch**-1 - stretch**2) * (1000.0 + 250.0 / stretch)
-    for side in ("upper", "lower"):
+    for side in JAWS:
         forces = model.taxels(state, side, LAYOUT)
 
         def check_pressure(expected, forces=forces):
@@ -86,7 +86,7 @@ def test_frictionless_taxels_read_the_cauchy_pressure(verification_record):
 
 def test_friction_forces_add_up_and_balance(stuck, verification_record):
     model, state = stuck
-    upper, lower = (model.taxels(state, side, LAYOUT) for side in ("upper", "lower"))
+    upper, lower = (model.taxels(state, side, LAYOUT) for side in JAWS)
     force = model.jaw_force(state, "upper")
 
     def check(total, opposite):
@@ -113,9 +113,9 @@ def test_friction_forces_add_up_and_balance(stuck, verification_record):
 def test_a_hard_lump_is_seen_by_the_jaw_that_is_nearer():
     lump = (np.array([0.02, 0.015, 0.014]), 5e-3)
     model, state = grasped(friction=0.6, lump=lump, cells=(8, 6, 5))
-    felt = [model.taxels(state, side, LAYOUT).taxels[2] for side in ("upper", "lower")]
+    felt = [model.taxels(state, side, LAYOUT).taxels[2] for side in JAWS]
     plain_model, plain = grasped(friction=0.6, cells=(8, 6, 5))
-    before = [plain_model.taxels(plain, side, LAYOUT).taxels[2] for side in ("upper", "lower")]
+    before = [plain_model.taxels(plain, side, LAYOUT).taxels[2] for side in JAWS]
 
     def check(upper, lower):
         assert upper[:, 1].mean() > 1.05 * lower[:, 1].mean()
@@ -172,7 +172,7 @@ PASSING = 5e-6
 def beyond_the_jaw(faces, *, size=(20e-3, 20e-3, 10e-3), closing=0.85e-3, tolerance=PASSING):
     """How far in m free faces of a stuck block reach beyond the upper jaw; ``faces`` may touch the jaws, by name."""
     block = graded_block(size, (), BlockMeshSettings(size=6e-3, edge_size=0.8e-3, growth=1.0))
-    jaws = [Jaw(side=side, width=0.05, depth=0.05, fillet=1e-3) for side in ("upper", "lower")]
+    jaws = [Jaw(side=side, width=0.05, depth=0.05, fillet=1e-3) for side in JAWS]
     touching = {name: block.facets[name] for name in faces}
     model = GraspModel(block.mesh, [RUBBER], touching, jaws=jaws, offsets=np.tile(np.array(size[:2]) / 2, (2, 1)))
     state = model.start(

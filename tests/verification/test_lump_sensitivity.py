@@ -12,6 +12,7 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.model import grasp_mesh
 from tactsim.experiments.grasp.setup import Embedded
 from tactsim.experiments.localization import lump_sensitivity
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.library import named_material
 from tactsim.mechanics.models.block_source import StructuredSource
 from tactsim.mesh.inclusions.sphere import Sphere
@@ -42,7 +43,7 @@ def plain():
 
 def forces(grasp):
     result = grasp.run()
-    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in JAWS])
 
 
 @pytest.fixture(scope="module")

@@ -14,6 +14,7 @@ from mutants import assert_kills
 
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.setup import GraspSetup
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results import Result
 
 EQUAL = 3e-3
@@ -70,7 +71,7 @@ def closed(jaw: dict[str, float], matrix: dict[str, Any], by: float, mesh: dict[
 
 def forces_of(result: Result) -> np.ndarray:
     """Forces (jaw, row, column) in N on the taxels."""
-    return np.array([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in JAWS])
 
 
 def unlike(forces: np.ndarray) -> float:

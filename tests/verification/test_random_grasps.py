@@ -8,6 +8,7 @@ from pydantic import ValidationError
 
 from tactsim.errors import InputError
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.interfaces.taxel_layout import JAWS
 
 COUNT, SIZE = 50, (40e-3, 40e-3, 20e-3)
 QUICK = (1, 2)
@@ -57,7 +58,7 @@ def test_a_random_grasp_converges_or_is_refused(number, verification_record):
     assert quantities["displacement"] == pytest.approx(closing, rel=1e-9)
     assert quantities["max_penetration"] <= 5e-4 * SIZE[2]
     assert quantities["min_volume_ratio"] > 0
-    for side in ("upper", "lower"):
+    for side in JAWS:
         check_balance(quantities, side)
         known = {"reference": "the reaction", "kind": "invariance", "mesh": "solid, coarse tetrahedra", "tolerance": 1e-5}
         verification_record(

@@ -1,11 +1,12 @@
 """A grasp of a tenth of the size: what is measured follows, and the lump is found at a tenth of the place.
 
 Moduli, friction and strains are the same, so that forces are a hundredth and lengths a tenth, whatever the defaults of element
-sizes, tolerances and radii are. Mutants: defaults of a large block for the small one.
+sizes, tolerances and radii are. Mutants: defaults of a large block for the small one, and rows of taxels for columns.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +16,8 @@ from mutants import assert_kills
 
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.localization.localization import Localization
+from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.localization.candidates import GAP
 from tactsim.results import Result
 
 TENTH = 0.1
@@ -42,18 +45,36 @@ def grasped(part: float, *, lump: bool, mesh: dict[str, Any] | None = None) -> R
     ).run()
 
 
-def found(part: float, folder: Path, **estimator: Any) -> Result:
-    """What an estimator finds in the readings of such a grasp."""
-    folder.mkdir()
-    for name, lump in (("lump", True), ("plain", False)):
-        grasped(part, lump=lump).save(folder / name)
-    case = {"grasp": str(folder / "lump"), "reference": str(folder / "plain"), "noise": 0.6e-3 * part**2}
+def located(folder: Path, part: float, grasp: str = "lump", **estimator: Any) -> Result:
+    """What an estimator makes of the readings of a grasp of this size that a folder holds."""
+    case = {"grasp": str(folder / grasp), "reference": str(folder / "plain"), "noise": 0.6e-3 * part**2}
     return Localization.model_validate(case | {"estimator": estimator}).run()
+
+
+def turned(result: Result) -> Result:
+    """The same grasp if rows of taxels were columns."""
+    transposed = {
+        name: replace(quantity, value=np.swapaxes(quantity.value, -1, -2).tolist())
+        for name, quantity in result.quantities.items()
+        if name.startswith("taxel_force_")
+    }
+    return replace(result, quantities=result.quantities | transposed)
+
+
+@pytest.fixture(scope="module")
+def stored(tmp_path_factory: pytest.TempPathFactory) -> dict[float, Path]:
+    """Folder of each size with a grasp with a lump, without, and with the lump and rows of taxels for columns."""
+    folders = {part: tmp_path_factory.mktemp(f"{part:g}") for part in (TENTH, 1.0)}
+    for part, folder in folders.items():
+        grasp = grasped(part, lump=True)
+        for name, result in (("lump", grasp), ("turned", turned(grasp)), ("plain", grasped(part, lump=False))):
+            result.save(folder / name)
+    return folders
 
 
 def check_forces(small: Result, large: Result) -> None:
     """Forces on the taxels are in proportion to the area."""
-    for side in ("upper", "lower"):
+    for side in JAWS:
         few, many = (np.array(result.quantities[f"taxel_force_{side}"].value) for result in (small, large))
         assert np.abs(few - TENTH**2 * many).max() < FORCES * TENTH**2 * many.max()
 
@@ -69,13 +90,23 @@ def test_forces_are_a_hundredth(verification_record):
     assert_kills(lambda result: check_forces(result, large), coarse=(grasped(TENTH, lump=True, mesh=sizes_of_large_blocks),))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("kind", ["model_based", "hypotheses"])
-def test_the_lump_is_found_at_a_tenth_of_the_place(kind, tmp_path, verification_record):
-    small, large = (found(part, tmp_path / f"{part:g}", kind=kind) for part in (TENTH, 1.0))
+def check_places(small: Result, large: Result) -> None:
+    """Centre and radius are in proportion to the side."""
     for name in ("estimated_center", "estimated_radius"):
         few, many = (np.array(result.quantities[name].value) for result in (small, large))
-        assert np.abs(few - TENTH * many).max() < PLACES * TENTH * 40e-3
+        assert np.abs(few - TENTH * many).max() < PLACES * TENTH * 40e-3, name
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("kind", ["model_based", "hypotheses"])
+def test_the_lump_is_found_at_a_tenth_of_the_place(kind, stored, verification_record):
+    small, large = (located(stored[part], part, kind=kind) for part in (TENTH, 1.0))
+    check_places(small, large)
+    for name in ("estimated_center", "estimated_radius"):
+        few, many = (np.array(result.quantities[name].value) for result in (small, large))
         known = {"reference": "the grasp of ten times the size", "kind": "invariance", "mesh": "default", "tolerance": PLACES}
         words = f"lump in a grasp of a tenth of the size, {name.replace('_', ' ')}, {kind.replace('_', '-')}"
         verification_record(f"{words}, over the side", few, TENTH * many, scale=TENTH * 40e-3, **known)
+    rows_for_columns = located(stored[TENTH], TENTH, "turned", kind=kind)
+    gap_of_large_blocks = located(stored[TENTH], TENTH, kind=kind, gap=GAP)
+    assert_kills(lambda result: check_places(result, large), swapped=(rows_for_columns,), gap=(gap_of_large_blocks,))

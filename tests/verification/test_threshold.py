@@ -98,10 +98,19 @@ def test_friction_stays_inside_its_cone(icf, verification_record):
     assert_kills(check, friction=(0.99,))
 
 
-def test_force_and_rise_do_not_fall_with_the_indentation(icf):
+def test_force_and_rise_grow_with_the_indentation(icf):
+    """Mutants: what is left of the recess for the rise, and the force on the tissue for that on the annulus."""
     record, _ = icf
-    for name in ("displacement", "reaction_force", "tissue_rise"):
-        assert (np.diff([step.values[name] for step in record.steps]) > 0).all(), name
+    displacement, force, rise = (
+        np.array([step.values[name] for step in record.steps]) for name in ("displacement", "reaction_force", "tissue_rise")
+    )
+
+    def check(displacement, force, rise):
+        for values in (displacement, force, rise):
+            assert (np.diff(values) > 0).all()
+
+    check(displacement, force, rise)
+    assert_kills(check, left=(displacement, force, RECESS - rise), on_the_tissue=(displacement, -force, rise))
 
 
 def check_halved_steps(case, whole, verification_record, refinement=1.0):

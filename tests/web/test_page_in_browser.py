@@ -40,6 +40,7 @@ from selenium.webdriver.common.by import By
 from selenium.webdriver.common.keys import Keys
 from slow_estimator import slow_content
 
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.server import application
 from tactsim.live.session.content import Content, opened_content
 from tactsim.live.sources import feed as feeds
@@ -216,7 +217,7 @@ def test_a_result_shows_its_numbers_turns_plays_and_changes_estimators(browser: 
     plain = grasp_folder(tmp_path / "b", taxel_forces(4, lump=0.0), lump=False)
     with shown(browser, str(folder), "--reference", str(plain)):
         quantities = json.loads((folder / "result.json").read_text())["quantities"]
-        forces = np.array([quantities[f"taxel_force_{side}"]["value"] for side in ("upper", "lower")])
+        forces = np.array([quantities[f"taxel_force_{side}"]["value"] for side in JAWS])
         until(lambda: shows(browser, forces))
         assert not shows(browser, 1.003 * forces), "the comparison can fail"
         assert words(browser, "title") == TITLE

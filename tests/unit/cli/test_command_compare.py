@@ -17,7 +17,7 @@ from tactsim.cli.figures import comparison
 from tactsim.cli.figures.comparison import FEW_STEPS, comparison_figure
 from tactsim.errors import InputError
 from tactsim.experiments.annulus.closed_form import ClosedForm
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.library import LIBRARY
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.comparison import compared
@@ -213,7 +213,7 @@ def grasped(steps: int, forces: list[list[float]], *warnings: str, solver: float
         "base_force": Quantity(2e-17 * solver, "N", ""),
         "unknowns": Quantity(int(100 * solver), "1", ""),
     }
-    for side in ("upper", "lower"):
+    for side in JAWS:
         quantities[f"taxel_force_{side}"] = Quantity(forces, "N", "force on each taxel; [row][column]")
     times = [(k + 1) / steps for k in range(steps)]
     quantities["time_history"] = Quantity(times, "s", "time [time]")
@@ -260,7 +260,7 @@ def test_taxels_of_other_sizes_are_compared_by_their_pressure() -> None:
     for name, layout in layouts.items():
         one = grasped(2, np.full((layout.rows, layout.columns), 5e3 * layout.area).tolist())
         pressures = Quantity(np.full((layout.rows, layout.columns), 5e3).tolist(), "Pa", "")
-        quantities = one.quantities | {f"taxel_pressure_{side}": pressures for side in ("upper", "lower")}
+        quantities = one.quantities | {f"taxel_pressure_{side}": pressures for side in JAWS}
         results[name] = replace(one, quantities=quantities, scene=grasp_scene((40e-3, 40e-3, 20e-3), layout))
     heads, texts = heads_and_texts(results)
     assert "mean pressure on the taxel in kPa; row 1 at the front" in heads

@@ -14,6 +14,7 @@ from live_pages import description, frame_line, grasp_folder, line, localized_fo
 from open_pages import Client, Page, opened_page, with_client
 from slow_estimator import slow_content
 
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.session import session
 from tactsim.live.session.choices import stored_choice
 from tactsim.live.session.content import opened_content
@@ -135,7 +136,7 @@ def test_a_stored_estimate_has_its_region_and_the_readings_it_was_made_of(tmp_pa
     content = json.loads(path.read_text())
     outline = [[0.02, 0.01], [0.03, 0.01], [0.03, 0.02], [0.02, 0.02], [0.02, 0.01]]
     content["scene"]["estimates"][1]["region"] = {"top": [outline], "front": [], "left": []}
-    for side in ("upper", "lower"):
+    for side in JAWS:
         taxels = content["quantities"][f"taxel_force_{side}"]
         taxels_less = [[value - 0.1 for value in row] for row in taxels["value"]]
         content["quantities"][f"taxel_difference_{side}"] = {**taxels, "value": taxels_less}

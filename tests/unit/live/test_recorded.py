@@ -11,12 +11,13 @@ from pathlib import Path
 import meshio
 import numpy as np
 import pytest
-from live_pages import SIDES, grasp_folder, localized_folder, made_up_grasp, made_up_store, resized, taxel_forces
+from live_pages import grasp_folder, localized_folder, made_up_grasp, made_up_store, resized, taxel_forces
 from made_grasps import response
 
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization.source import readings_of
 from tactsim.interfaces.estimate import decimals_of_places
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.session.choices import StoredEstimate, offered_choices, stored_choice
 from tactsim.live.session.content import opened_content
 from tactsim.live.session.estimating import NO_ERROR, NO_ERRORS, estimated, frame_readings, shown_signal
@@ -78,7 +79,7 @@ def test_a_taxel_is_saturated_while_its_samples_are(tmp_path: Path) -> None:
     flags = np.zeros((4, 2, 3, 3), int)
     flags[1:3, 0, 1, 1] = 1
     read = {}
-    for jaw, side in enumerate(SIDES):
+    for jaw, side in enumerate(JAWS):
         for name in (f"taxel_force_{side}", f"taxel_force_{side}_history"):
             read[name.replace("taxel", "read")] = result.quantities[name]
         read[f"saturated_{side}"] = Quantity(flags[:, jaw].mean(axis=0).tolist(), "1", "")

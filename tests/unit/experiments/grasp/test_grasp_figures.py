@@ -242,7 +242,7 @@ def test_no_taxel_is_left_out_of_those_that_carry_most_by_round_off():
 
 def test_a_legend_of_many_taxels_alike_counts_those_that_it_does_not_name():
     force = np.linspace(1 / STEPS, 1, STEPS)[:, None, None] * np.ones((4, 5))
-    histories = {f"taxel_force_{side}_history": Quantity(force.tolist(), "N", "") for side in ("upper", "lower")}
+    histories = {f"taxel_force_{side}_history": Quantity(force.tolist(), "N", "") for side in JAWS}
     result = made_up(layout=TaxelLayout(rows=4, columns=5, pitch=6e-3, size=5e-3))
     axis = history_figure(replace(result, quantities={**result.quantities, **histories})).axes[-1]
     (text,) = (text.get_text() for text in axis.get_legend().get_texts())

@@ -8,7 +8,7 @@ from scenes import grasp_scene, unmarked_figures
 from tactsim.errors import InputError
 from tactsim.experiments.localization.confusion import Confusion
 from tactsim.experiments.localization.source import folder_words
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
@@ -22,7 +22,7 @@ LUMP = PLAIN + np.outer([1.0, 0.5], np.eye(9)[4]).reshape(2, 3, 3)
 def stored(folder, forces, inclusions, status=Status.CONVERGED):
     layout = TaxelLayout()
     quantities = {"displacement": Quantity(1e-3, "m", "")}
-    for jaw, side in enumerate(("upper", "lower")):
+    for jaw, side in enumerate(JAWS):
         quantities[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
     scene = grasp_scene([40e-3, 40e-3, 20e-3], layout, inclusions, width=40e-3, depth=40e-3)
     step = StepRecord(1, 3, 0.0, {"displacement": 1e-3})

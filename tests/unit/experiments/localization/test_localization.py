@@ -18,7 +18,7 @@ from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.localization.figures import space
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.localization import Localization
-from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.tube import Tube
@@ -34,7 +34,7 @@ ESTIMATOR = ThesisEstimator(background="reference")
 def grasp(forces, *, closing=1e-3, inclusions=(SPHERE,), apart=0.0, layout=None, extra=None):
     layout = layout or TaxelLayout()
     quantities = {"displacement": Quantity(closing, "m", "")}
-    for jaw, side in enumerate(("upper", "lower")):
+    for jaw, side in enumerate(JAWS):
         quantities[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
         quantities[f"taxel_pressure_{side}"] = Quantity((forces[jaw] / layout.area).tolist(), "Pa", "")
     scene = grasp_scene(SIZE, layout, inclusions, width=40e-3, depth=40e-3)
@@ -124,7 +124,7 @@ def test_many_words_about_an_estimate_end_above_the_numbers_of_the_taxels(folder
 def test_the_views_write_what_each_taxel_reads_with_its_row_and_column(folders):
     result = run(folders)
     figure = views_figure(result, localized(result))
-    for side, forces in zip(("upper", "lower"), BALL, strict=True):
+    for side, forces in zip(JAWS, BALL, strict=True):
         axis = next(axis for axis in figure.findobj(Axes) if axis.get_title(loc="left") == f"{side} jaw in mN")
         written = {text.get_position(): text.get_text() for text in axis.texts}
         assert written == {(column, row): f"{1e3 * force:.3g}" for (row, column), force in np.ndenumerate(forces)}
@@ -225,7 +225,7 @@ def test_saturated_taxels_of_read_forces_are_not_trusted(folders, tmp_path):
     spoiled = PLAIN + BALL
     spoiled[0, 0, 2] = 9.0
     extra = {}
-    for jaw, side in enumerate(("upper", "lower")):
+    for jaw, side in enumerate(JAWS):
         share = np.zeros((3, 3))
         share[0, 2] = 0.4 * (jaw == 0)
         extra[f"read_force_{side}"] = Quantity(spoiled[jaw].tolist(), "N", "")
