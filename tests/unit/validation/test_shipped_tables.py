@@ -88,3 +88,10 @@ def test_all_221_numbers_have_a_row_and_all_29_errata_words() -> None:
     manifest = shipped_tables("thesis").manifest
     assert list(manifest.numbers) == [f"T{number:03}" for number in range(1, 222)]
     assert list(manifest.errata) == [f"E{number}" for number in range(1, 30)]
+
+
+@pytest.mark.parametrize("number", ["T040", "T051", "T139", "T176"])
+def test_a_number_that_something_computed_bears_on_has_a_row_that_is_computed(number: str) -> None:
+    """Resolution, linear range, objective and times of the switches: each had only words, or an input that came back."""
+    rows = [row for table in shipped_tables("thesis").tables.values() for row in table.rows if number in row.numbers]
+    assert any(row.evaluate is not None and getattr(row.evaluate, "kind", "") != "switch_mean_rate" for row in rows)
