@@ -77,10 +77,16 @@ def test_a_step_towards_a_jaw_is_confirmed_where_the_force_rises_there_and_falls
 
 
 def test_what_is_found_again_from_data_that_were_made_of_it_is_no_reproduction() -> None:
-    """The line of 3.1.2 comes back through divider and fit, the lines of 2.3.1 through creep curves: no data are printed."""
-    rows = [row for name in ("section_2_2", "section_2_3") for row in shipped_tables("thesis").tables[name].rows if row.evaluate]
+    """The line of 3.1.2 comes back through divider and fit, the lines of 2.3.1 through creep curves, a rate through switches, and
+    numbers of 4.7.2 by rules of rounding: no data are printed, and no rule."""
+    tables = ("section_2_2", "section_2_3", "chapter_5", "equation_4_7_2")
+    rows = [row for name in tables for row in shipped_tables("thesis").tables[name].rows if row.evaluate]
     found = [row for row in rows if row.evaluate.kind == "recovered_line" or getattr(row.evaluate, "study", "") == "creep"]
     assert len(found) == 5
+    rates = [row for row in rows if row.evaluate.kind == "switch_mean_rate" and row.evaluate.formula == "corrected"]
+    ruled = [row for row in rows if getattr(row.evaluate, "as_written", False) or getattr(row.evaluate, "truncated_parts", False)]
+    assert (len(rates), len(ruled)) == (3, 3)
+    found += [*rates, *ruled]
     assert {(row.origin, type(row.ends)) for row in found} == {("own", Regression)}
 
 
