@@ -12,7 +12,7 @@ from wrong_rows import misjudged
 
 from tactsim.case import loading
 from tactsim.shipped import CASES
-from tactsim.validation.endings import Confirmed, Contradicted, Regression
+from tactsim.validation.endings import Confirmed, Contradicted, Regression, RegressionBound, Reproduced, Transcribed
 from tactsim.validation.execution import simulated
 from tactsim.validation.figures import validation_figure
 from tactsim.validation.inputs import Inputs
@@ -101,3 +101,36 @@ def test_a_number_that_something_computed_bears_on_has_a_row_that_is_computed(nu
     """Resolution, linear range, objective and times of the switches: each had only words, or an input that came back."""
     rows = [row for table in shipped_tables("thesis").tables.values() for row in table.rows if number in row.numbers]
     assert any(row.evaluate is not None and getattr(row.evaluate, "kind", "") != "switch_mean_rate" for row in rows)
+
+
+FLATTERING = {
+    "quotients of two printed numbers": (lambda row: row.evaluate.kind == "quotient", Transcribed, 3),
+    "sums of two inputs": (lambda row: getattr(row.evaluate, "number", "") == "largest", Transcribed, 2),
+    "symmetry of a symmetric block": (lambda row: row.evaluate.kind == "taxel_asymmetry", RegressionBound, 6),
+    "proportion in a linear theory": (lambda row: row.evaluate.kind == "ratio_effect", RegressionBound, 1),
+    "the stable sets of this library": (lambda row: row.id.partition(".")[2] in ("stable_max", "stable_rms"), RegressionBound, 4),
+}
+"""What cannot fail, or says nothing of the thesis: which rows, how they end, and how many there are."""
+
+
+@pytest.mark.parametrize("what", FLATTERING)
+def test_what_cannot_fail_or_says_nothing_of_the_thesis_is_not_counted_for_it(what: str) -> None:
+    chosen, ending, number = FLATTERING[what]
+    rows = [row for table in shipped_tables("thesis").tables.values() for row in table.rows if row.evaluate and chosen(row)]
+    assert [type(row.ends) for row in rows] == number * [ending]
+
+
+def test_one_tissue_pressed_faster_confirms_nothing() -> None:
+    """Passive tissue hardens with the rate whatever it is (E26): no row that compares one tissue with itself is confirmed."""
+    every = shipped_tables("thesis").tables["chapter_5"].rows
+    rows = [row for row in every if getattr(row.evaluate, "kind", "") == "probe_force_ratio"]
+    same = [row for row in rows if row.evaluate.press.tissue == row.evaluate.over.tissue]
+    assert len(same) >= 4
+    assert not any(isinstance(row.ends, Confirmed) for row in same)
+
+
+@pytest.mark.parametrize("name", ["appendix_a", "section_6_3"])
+def test_what_is_worked_out_of_equations_is_not_printed(name: str) -> None:
+    """Bands, sections and views have equations and no example: all but the ends of the scale of 256 levels."""
+    rows = [row for row in shipped_tables("thesis").tables[name].rows if isinstance(row.ends, Reproduced)]
+    assert {row.id for row in rows if row.origin == "thesis"} <= {"level_full", "level_beyond"}
