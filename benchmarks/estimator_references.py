@@ -29,7 +29,7 @@ from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.lump_response import LumpResponse
-from tactsim.localization.plain_parts import plain_parts
+from tactsim.localization.plain_parts import plain_parts_warning
 from tactsim.materials.library import named_material
 
 ROOT = Path(__file__).parents[1]
@@ -112,10 +112,9 @@ def run(order: Sequence[str]) -> None:
 def estimated(estimator: Estimator, readings: Readings, truth: Truth) -> tuple[JudgedEstimate, dict[str, Any]]:
     """One estimate against the truth, and what is kept of it."""
     estimate = estimator.estimate(readings)
-    parts = plain_parts(readings, estimate)
     center = [round(1e3 * value, 3) for value in estimate.inclusions[0].center] if estimate.inclusions else None
     factor = None if estimate.factor is None else round(estimate.factor, 4)
-    warned = parts is not None and not parts.fits
+    warned = plain_parts_warning(readings, estimate) is not None
     return outcome(estimate, truth), {"sample": truth.sample, "center_mm": center, "factor": factor, "warned": warned}
 
 
@@ -169,7 +168,8 @@ def as_text(content: Mapping[str, Any]) -> str:
         "",
         "An estimator compares with a grasp of plain tissue, the reference. Good numbers belong to a reference of the tissue "
         "that was grasped; what another reference costs stands beside them. *Warned* counts grasps of which `result.warnings` "
-        "says that the readings away from the estimate do not fit the reference.",
+        "doubts the reference: the readings away from the estimate do not fit it, or, where too few taxels lie away from it, "
+        "those of all are a multiple of it or a fitted factor cannot be told from what the inclusions do.",
         "",
         f"| {' | '.join(heads)} |",
         "|" + " --- |" * len(heads),

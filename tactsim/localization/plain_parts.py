@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -70,9 +71,13 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
     a factor; readings of the tissue of the reference bring either above its limit once in a thousand times. A factor f of the
     reference multiplies its errors too: what it leaves has the variance :math:`(1 + f^2) \sigma^2 + f^2 e_b^2 \overline{p^2}`.
     """
+    return _beside_inclusions(readings, estimate.inclusions)
+
+
+def _beside_inclusions(readings: Readings, inclusions: Sequence[EstimatedInclusion]) -> PlainParts | None:
     if readings.reference is None or readings.difference is None:
         return None
-    beside = _beside(readings, estimate)
+    beside = _beside(readings, inclusions)
     reference = np.asarray(readings.reference, dtype=float)
     change, plain = readings.difference[beside], reference[beside]
     if len(plain) < LEAST or not plain.any():
@@ -87,10 +92,10 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
 
 
 def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
-    """What the user must know if the plain parts do not fit the reference, or cannot tell whose a factor is; None if neither."""
+    """What the user must know if the plain parts do not fit the reference, or are too few to tell; None if nothing."""
     parts = plain_parts(readings, estimate)
     if parts is None:
-        return _factor_without_plain_parts(estimate)
+        return _factor_without_plain_parts(estimate) or _multiple_under_inclusions(readings, estimate)
     if parts.fits:
         return None
     words = (
@@ -118,12 +123,28 @@ def _factor_without_plain_parts(estimate: Estimate) -> str | None:
     )
 
 
-def _beside(readings: Readings, estimate: Estimate) -> Array:
-    """Which taxels (jaw, row, column) lie beside all estimated inclusions and can be trusted."""
+def _multiple_under_inclusions(readings: Readings, estimate: Estimate) -> str | None:
+    """That a factor alone explains the readings of all taxels, where the estimate leaves none to test it; None if it does not.
+
+    An estimator without a factor covers the block with inclusions rather than say that the tissue is another.
+    """
+    everywhere = _beside_inclusions(readings, ()) if estimate.inclusions else None
+    if everywhere is None or everywhere.fits or not everywhere.fits_scaled or everywhere.factor < 0:
+        return None
+    return (
+        f"fewer than {LEAST} taxels lie away from the estimate, and the readings of all {everywhere.taxels} are "
+        f"{everywhere.factor:.3g} times the reference (chi-square of this common factor {everywhere.common:.3g}, of a reference "
+        f"of the same tissue at most {everywhere.limits[0]:.3g}; of what it leaves {everywhere.scaled_chi_square:.3g}): tissue "
+        "or sensors that are not those of the reference explain them without any inclusion; give a reference of this tissue"
+    )
+
+
+def _beside(readings: Readings, inclusions: Sequence[EstimatedInclusion]) -> Array:
+    """Which taxels (jaw, row, column) lie beside all of these inclusions and can be trusted."""
     x, y = readings.taxel_places()
     places = np.stack(np.meshgrid(x, y), axis=-1)
     beside = np.ones(places.shape[:2], bool)
-    for one in estimate.inclusions:
+    for one in inclusions:
         beside &= _distance(places, one) > REACH * readings.layout.pitch
     both = np.broadcast_to(beside, readings.forces.shape)
     return both if readings.valid is None else both & readings.valid

@@ -151,14 +151,18 @@ class HypothesesEstimator(Estimator):
         likeliest = max(probabilities, key=lambda name: probabilities[name])
         probability, best = float(np.clip(1 - probabilities["none"], 0.0, 1.0)), int(np.argmax(densities[likeliest]))
         if likeliest == "none":
-            factor = fits[best].bare_factor
+            factor = self._stated(fits[best].bare_factor)
             reason = f"no inclusion (probability {probabilities['none']:.3g}){factor_words(factor)}"
             return Estimate(False, (), reason, probability, probabilities, factor)
-        cell, factor = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes]), fits[best].factor
+        cell, factor = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes]), self._stated(fits[best].factor)
         chosen = explained[likeliest][best]
         inclusions = likely_bodies(chosen.bodies, chosen.candidates, cell)
         reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}{factor_words(factor)}"
         return Estimate(True, inclusions, reason, probability, probabilities, factor)
+
+    def _stated(self, factor: float) -> float | None:
+        """A factor of a fit, None if the reference cannot be of another tissue: then none is fitted."""
+        return factor if self.factor_spread > 0 else None
 
     def _priors(self, readings: Readings) -> list[ReferenceErrors]:
         """Errors of a reference of the same tissue, and of another."""

@@ -5,9 +5,14 @@ from __future__ import annotations
 from typing import Annotated, Literal
 
 import numpy as np
+import scipy
 from pydantic import Field
 
 from tactsim.analytic.atrial import table_4_1
+from tactsim.array import Array
+from tactsim.identification.dma_data import DmaData, synthetic_dma
+from tactsim.identification.dma_least_squares import fit_least_squares
+from tactsim.identification.dma_objective import compliance_parts, objective
 from tactsim.identification.dma_signals import SHOWN_CYCLES, DmaSignals, complex_modulus
 from tactsim.identification.dma_synthetic_signals import DmaMachine, synthetic_signals
 from tactsim.interfaces import drawing, quantity
@@ -70,6 +75,34 @@ def dma_signal_lag(frequency: Positive[Frequency], *, cycles: Cycles = 20.0, noi
     frequency : of the test
     """
     return float(np.angle(complex_modulus(_signals(frequency, cycles, noise, None, 1)).modulus))
+
+
+@quantity(unit="1")
+def objective_forms(
+    noise: Annotated[float, Field(gt=0, le=0.5)], seeds: Annotated[tuple[NonNegative[int], ...], Field(min_length=1)]
+) -> float:
+    """How far apart the compliances are that both forms of eq. 4.5.2 choose, over what the squared one leaves of the data.
+
+    The norms are over elastic and viscous compliance at the eight frequencies; the number is the largest of several sets of data.
+
+    Parameters
+    ----------
+    noise : of each compliance of Table 4.1 over itself
+    seeds : of the noise, one for each set of data
+    """
+    return max(_apart_over_misfit(synthetic_dma(table_4_1(), noise=noise, seed=seed)) for seed in seeds)
+
+
+def _apart_over_misfit(data: DmaData) -> float:
+    """The same of one set of data; both searches begin at the constants that least squares find."""
+    start, size = fit_least_squares(data, weighting="objective").constants.logarithms, float(np.linalg.norm(data.parts))
+
+    def chosen(form: str, scale: float) -> Array:
+        search = scipy.optimize.minimize(lambda logarithms: float(objective(logarithms, data, form)) / scale, start)
+        return compliance_parts(search.x, data.frequencies)
+
+    squared, printed = chosen("squared", size**2), chosen("as_printed", size)
+    return float(np.linalg.norm(printed - squared) / np.linalg.norm(squared - data.parts))
 
 
 @drawing

@@ -241,3 +241,16 @@ def stiffness_resolution(force: Force, displacement: Length) -> float:
     displacement : displacement of the tissue
     """
     return force / displacement
+
+
+@quantity(unit="N")
+def converter_force_step(force: Positive[Force]) -> float:
+    """Force in N that a step of the converter stands for at a force, by the line of 3.1.2 and the electronics by default.
+
+    Parameters
+    ----------
+    force : force on the sensor
+    """
+    conductance = np.array(THESIS_LINE.conductance(force))
+    step = float(SignalChain(low_pass=None).conductance_step(conductance))
+    return float(THESIS_LINE.force(conductance + step) - THESIS_LINE.force(conductance))

@@ -105,6 +105,28 @@ def probe_force_ratio(
     return _force_at(depth, press, outcome, study) / _force_at(depth, over, outcome, study)
 
 
+@quantity(unit="m")
+def probe_contact_depth(inputs: Inputs, study: StudyName, run: RunName, height: Positive[Length]) -> float:
+    """Depth in m of the probe at which the tissue touches its sides up to a height, the first time on the way in.
+
+    Parameters
+    ----------
+    height : height above the face
+
+    Raises
+    ------
+    UnknownName, InputError
+        If there is no such run, or it did not converge or has no contact that high.
+    """
+    history = inputs.converged(study, run).history
+    depth, touched = np.array(history["depth"]), np.array(history["contact_height"])
+    beyond = np.flatnonzero(touched >= height)
+    if not beyond.size or beyond[0] == 0:
+        raise InputError(f"{study}, {run} has no contact up to {format_quantity(height, 'm')} above the face")
+    sides = slice(int(beyond[0]) - 1, int(beyond[0]) + 1)
+    return float(np.interp(height, touched[sides], depth[sides]))
+
+
 class ProbeRun(FrozenModel):
     """A run of a study of the probe."""
 

@@ -10,6 +10,7 @@ from made_grasps import LAYOUT, NOISE, SIZE, plain_forces, response
 
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
+from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.plain_parts import plain_parts, plain_parts_warning
 
@@ -98,7 +99,33 @@ def test_a_factor_is_doubted_where_no_plain_parts_are_left() -> None:
     words = plain_parts_warning(read(2.3 * PLAIN), Estimate(True, tubes, "two arteries", factor=2.3))
     assert words is not None
     assert "whether its factor of 2.3 is of tissue and sensors" in words
-    assert plain_parts_warning(read(2.3 * PLAIN), Estimate(True, tubes, "two arteries")) is None
+
+
+def under_all_taxels(factor: float | None = None) -> Estimate:
+    lines = [((0.0, y, 10e-3), (40e-3, y, 10e-3)) for y in (10e-3, 30e-3)]
+    tubes = tuple(EstimatedInclusion("tube", (20e-3, line[0][1], 10e-3), 4e-3, line=line) for line in lines)
+    return Estimate(True, tubes, "two arteries", factor=factor)
+
+
+@pytest.mark.parametrize("factor", [None, 1.0])
+def test_inclusions_under_all_taxels_are_doubted_where_a_factor_alone_explains_the_readings(factor: float | None) -> None:
+    """40 of 40 plain blocks, the reference 20 % softer, were two arteries to `hypotheses` without a factor, without a word."""
+    words = plain_parts_warning(read(1.25 * PLAIN), under_all_taxels(factor))
+    assert words is not None
+    assert "the readings of all 18 are 1.25 times the reference" in words
+    assert "without any inclusion" in words
+    assert plain_parts_warning(read(PLAIN), under_all_taxels(factor)) is None, "the reference is of this tissue"
+    assert plain_parts_warning(read(1.25 * PLAIN + with_lump() - PLAIN), under_all_taxels(factor)) is None, "a factor is not all"
+    assert plain_parts_warning(Readings(PLAIN, LAYOUT, SIZE), under_all_taxels(factor)) is None
+
+
+def test_hypotheses_that_cannot_fit_a_factor_are_warned_of_on_plain_tissue() -> None:
+    given = replace(read(1.25 * PLAIN), response=response())
+    estimate = HypothesesEstimator(factor_spread=0.0).estimate(given)
+    assert estimate.present
+    assert estimate.factor is None, "it allows for none"
+    assert "give a reference of this tissue" in str(plain_parts_warning(given, estimate))
+    assert HypothesesEstimator().estimate(given).factor == pytest.approx(1.25, abs=0.01)
 
 
 def test_two_balls_are_stated_with_the_factor_of_the_readings() -> None:

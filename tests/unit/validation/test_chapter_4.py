@@ -17,6 +17,7 @@ from tactsim.validation.quantities.atrium import (
     numbered_units,
     sensitivities,
 )
+from tactsim.validation.quantities.dma import objective_forms
 from tactsim.validation.quantities.harmonic_load import dynamic_coefficient, dynamic_exponent, truncated, units_by_speed
 
 
@@ -81,3 +82,8 @@ def test_the_sensitivities_are_the_differences_of_the_compliance() -> None:
     with pytest.raises(AssertionError):
         np.testing.assert_allclose(sensitivities(), expected + 3e-8, atol=1e-8)
     assert [identifiable_constants(error) for error in (0.01, 1e-9)] == [4, 8]
+
+
+def test_the_forms_of_the_objective_are_held_against_the_worst_of_several_data() -> None:
+    one, other = (objective_forms(noise=0.02, seeds=(seed,)) for seed in (1, 3))
+    assert 0 < one < other == objective_forms(noise=0.02, seeds=(1, 3))

@@ -11,7 +11,7 @@ from tactsim.errors import InputError
 from tactsim.shipped import CASES
 from tactsim.validation.execution import Task, simulated
 from tactsim.validation.inputs import Inputs
-from tactsim.validation.quantities.probe import Press, probe_force_ratio, switch_mean_rate
+from tactsim.validation.quantities.probe import Press, probe_contact_depth, probe_force_ratio, switch_mean_rate
 from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Row
 
@@ -38,7 +38,7 @@ def without_finite_elements(row: Row) -> bool:
 def test_rows_hold_without_finite_elements(inputs: Inputs) -> None:
     every = shipped_table("chapter_5").rows
     rows = [row for row in every if without_finite_elements(row)]
-    assert len(rows) == len(every) - 12
+    assert len(rows) == len(every) - 13
     assert misjudged(rows, inputs) == ([], [])
 
 
@@ -70,3 +70,19 @@ def test_coarse_sampling_misses_the_rate_by_its_step() -> None:
     coarse = switch_mean_rate(rate=0.97e-3, sampling_rate=20.0)
     assert coarse == pytest.approx(0.97e-3, rel=0.02)
     assert coarse != pytest.approx(0.97e-3, rel=1e-4)
+
+
+def test_the_depth_of_a_contact_is_that_of_its_first_sample_and_the_one_before() -> None:
+    heights = (0.0, 0.4e-3, 1.4e-3, 0.2e-3, 0.0)
+    touched = touch(2.0)
+    touched = touched.model_copy(update={"history": {**touched.history, "contact_height": heights}})
+
+    def depth(height: float, outcome: RunOutcome = touched) -> float:
+        return probe_contact_depth(Inputs(studies={"s": (outcome,)}), "s", "r", height)
+
+    assert depth(0.2e-3) == pytest.approx(1.25e-3, rel=1e-12)  # on the way in; round-off
+    assert depth(0.9e-3) == pytest.approx(3.75e-3, rel=1e-12)
+    with pytest.raises(InputError, match=r"no contact up to 1\.5 mm above the face"):
+        depth(1.5e-3)
+    with pytest.raises(InputError, match="gave up"):
+        depth(1e-3, touched.model_copy(update={"status": "failed", "reason": "gave up"}))
