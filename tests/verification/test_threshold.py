@@ -98,7 +98,7 @@ def test_friction_stays_inside_its_cone(icf, verification_record):
     assert_kills(check, friction=(0.99,))
 
 
-def test_force_and_rise_grow_with_the_indentation(icf):
+def test_force_and_rise_do_not_fall_with_the_indentation(icf):
     """Mutants: what is left of the recess for the rise, and the force on the tissue for that on the annulus."""
     record, _ = icf
     displacement, force, rise = (
