@@ -33,7 +33,7 @@ def box(
     return quadratic_mesh(mesh.p.T.copy(), mesh.t.T.astype(np.int64))
 
 
-def body_of(mesh: QuadraticMesh, measure: Measure, *materials: Material, volume_stiffness: float = 0.0) -> Body:
+def body_of(mesh: QuadraticMesh, measure: Measure, *materials: Material, volume_stiffness: float | Array = 0.0) -> Body:
     """A body in the Taylor-Hood space of a mesh, one material per region."""
     return Body(TaylorHood(mesh.nodes, mesh.elements, measure), materials, mesh.regions, volume_stiffness=volume_stiffness)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 import pytest
 from mutants import assert_kills
@@ -13,7 +15,7 @@ from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.experiments.indentation.indentation import Indentation
-from tactsim.fem.assembly.body import VOLUME_STIFFNESS
+from tactsim.fem.assembly.volume_stiffness import MOST, VOLUME_STIFFNESS
 from tactsim.fem.solvers.block_preconditioner import pressure_mass
 from tactsim.fem.solvers.linear import direct_solver
 from tactsim.fem.solvers.two_level import linear_interpolation
@@ -29,37 +31,67 @@ OFF = 0.02
 """Error of a volume ratio that counts."""
 
 
-def poor_volume(stiffness: float, monkeypatch) -> tuple[float, float]:
-    """Part of a plain block's volume that is off by more than ``OFF`` after a closing by 1 mm in all, and its least ratio."""
-    monkeypatch.setattr(block_model, "VOLUME_STIFFNESS", stiffness)
-    grasp = Grasp.model_validate(
-        {
-            "block": {"size": SIZE, "tissue": "icf_stable"},
-            "matrix": {"rows": 2, "columns": 2, "pitch": 10e-3, "size": 9e-3},
-            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 0.5e-3, "duration": 1.0}]},
-            "mesh": {"kind": "graded", "size": 4e-3, "edge_size": 1.6e-3},
-            "time": {"steps": 1},
-        }
-    )
-    model = grasp_model(grasp, grasp_mesh(grasp))
-    state = list(grasp_path(grasp, model).states())[-1][0].contact
+@dataclass(frozen=True)
+class Squeezed:
+    """A plain block closed by 1 mm in all: the part of its volume that is off by ``OFF``, the least ratio, a taxel in N."""
+
+    poor: float
+    least: float
+    taxel: float
+
+
+def squeezed(edge_size: float, growth: float, stiffness: float | None, monkeypatch) -> Squeezed:
+    """The block with cells of ``edge_size`` in m at the jaws, and of one ``stiffness`` or by the rule."""
+    with monkeypatch.context() as changed:
+        if stiffness is not None:
+            changed.setattr(block_model, "block_volume_stiffness", lambda nodes, elements: stiffness)
+        grasp = Grasp.model_validate(
+            {
+                "block": {"size": SIZE, "tissue": "icf_stable"},
+                "matrix": {"rows": 2, "columns": 2, "pitch": 10e-3, "size": 9e-3},
+                "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 0.5e-3, "duration": 1.0}]},
+                "mesh": {"kind": "graded", "size": 4e-3, "edge_size": edge_size, "growth": growth},
+                "time": {"steps": 1},
+            }
+        )
+        model = grasp_model(grasp, grasp_mesh(grasp))
+        state = list(grasp_path(grasp, model).states())[-1][0].contact
     error, weights = np.abs(model.body.volume_error(state.unknowns, state.kinematics)), model.body.points.weights
-    return float(weights[error > OFF].sum() / weights.sum()), float(state.kinematics.J.min())
+    poor, least = weights[error > OFF].sum() / weights.sum(), state.kinematics.J.min()
+    return Squeezed(float(poor), float(least), float(model.taxels(state, "upper", grasp.matrix).taxels[2, 0, 0]))
 
 
 def test_tissue_keeps_its_volume_at_the_edges_of_the_jaws(monkeypatch, verification_record):
     """Mutant: linear pressures alone hold the volume."""
 
     def check(stiffness):
-        poor, least = poor_volume(stiffness, monkeypatch)
-        assert poor < 0.02  # 0.7 %, and 6 % without
-        assert least > 0.9  # 0.97, and 0.86 without
+        found = squeezed(1.6e-3, 0.5, stiffness, monkeypatch)
+        assert found.poor < 0.02  # 0.7 %, and 6 % without
+        assert found.least > 0.9  # 0.97, and 0.86 without
 
-    check(VOLUME_STIFFNESS)
+    check(None)
     known = {"reference": "volume of incompressible tissue", "kind": "exact", "mesh": "graded cells of 1.6 to 4 mm"}
-    found, _ = poor_volume(VOLUME_STIFFNESS, monkeypatch)
-    verification_record("part of a grasped block whose volume is off by 2 %", found, 0.0, scale=1.0, tolerance=0.02, **known)
+    poor = squeezed(1.6e-3, 0.5, None, monkeypatch).poor
+    verification_record("part of a grasped block whose volume is off by 2 %", poor, 0.0, scale=1.0, tolerance=0.02, **known)
     assert_kills(check, without=(0.0,))
+
+
+def test_slim_cells_keep_volumes_without_making_a_block_stiffer(monkeypatch, verification_record):
+    """Against cells of 0.25 and 2.5 mm, 107 368 unknowns, with the stiffness of a block.
+
+    Mutants: the stiffness of coarse cells for all, which leaves volumes, and that of slim ones for all, which hardens the block.
+    """
+    finer = 0.206188
+
+    def check(stiffness):
+        found = squeezed(0.4e-3, 0.8, stiffness, monkeypatch)
+        assert found.poor < 1e-3  # 0.6e-3; 2.7e-3 with 3 for all cells
+        assert found.taxel == pytest.approx(finer, rel=1.5e-3)  # 0.10 %; 0.22 % with 20 for all cells
+        return found
+
+    known = {"reference": "cells of 0.25 and 2.5 mm", "kind": "invariance", "mesh": "graded cells of 0.4 to 4 mm"}
+    verification_record("taxel at the corner of a plain block", check(None).taxel, finer, tolerance=1.5e-3, **known)
+    assert_kills(check, coarse=(VOLUME_STIFFNESS,), slim=(MOST,))
 
 
 def test_tissue_that_is_drawn_around_a_tight_fillet_keeps_its_volume(monkeypatch, verification_record):

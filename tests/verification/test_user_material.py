@@ -69,13 +69,15 @@ def test_an_exponent_of_two_is_neo_hooke(verification_record):
 def body_and_unknowns(measure: str, material: Material, *, relaxing: bool, resisting: float = 0.0) -> tuple[Body, Array]:
     """A jittered box of two materials, deformed; with ``relaxing``, in a step of time of materials that relax.
 
-    ``resisting`` is the stiffness a against what the pressures leave of the volume change.
+    ``resisting`` is the stiffness a against what the pressures leave of the volume change, in the first element; in the last it is
+    twice as much.
     """
     counts = MEASURES[measure]
     mesh = box([1.0] * len(counts), counts, jitter=0.2, seed=3)
     nodes = mesh.nodes + (np.array([0.3, 0.0]) if measure == "axisymmetric" else 0.0)
     mesh = QuadraticMesh(nodes, mesh.elements, np.arange(len(mesh.elements)) % 2)
-    body = body_of(mesh, measure, material, NeoHookean(c10=MODULUS / 4, bulk_modulus=MODULUS), volume_stiffness=resisting)
+    stiffness = resisting * np.linspace(1.0, 2.0, len(mesh.elements))
+    body = body_of(mesh, measure, material, NeoHookean(c10=MODULUS / 4, bulk_modulus=MODULUS), volume_stiffness=stiffness)
     generator = np.random.default_rng(1)
     if relaxing:
         shape = body.points.weights.shape

@@ -21,12 +21,6 @@ from tactsim.fem.threads import loop_threads
 from tactsim.interfaces import Material
 
 ELASTIC_STEP = np.empty((6, 0, 0))
-VOLUME_STIFFNESS = 3.0
-"""What bodies in contact have as ``volume_stiffness``, see `Body`.
-
-Where a free face rolls onto a jaw or around a fillet, tissue that sticks beside it is strained without bound. Without this
-stiffness its volume ratios are 0.7 to 1.2 there however fine the elements are, and thin ones turn inside out; docs/theory/mesh.md
-has the figures."""
 
 
 @dataclass(frozen=True)
@@ -75,7 +69,7 @@ class Body:
     space : TaylorHood
     materials : one per region
     regions : (E,) index into ``materials``
-    volume_stiffness : a; with zero, the elements are those of Taylor and Hood
+    volume_stiffness : a, for all elements or (E,); with zero, the elements are those of Taylor and Hood
 
     Attributes
     ----------
@@ -100,7 +94,7 @@ class Body:
         regions: Array,
         *,
         quadrature_order: int | None = None,
-        volume_stiffness: float = 0.0,
+        volume_stiffness: float | Array = 0.0,
     ):
         if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
             raise InputError(f"regions must give one of {len(materials)} materials for each of {len(space.elements)} elements")
@@ -110,14 +104,15 @@ class Body:
         self.regions = np.asarray(regions)
         self.numbers = np.arange(len(self.regions))
         self.points = space.volume_points(quadrature_order)
-        self.quadrature_order, self.stabilisation = quadrature_order, volume_stiffness
+        self.quadrature_order = quadrature_order
+        self.stabilisation = np.broadcast_to(volume_stiffness, self.regions.shape)
         self.linear = np.array([m.small_strain for m in materials])[self.regions]
         self.forms = tuple(compiled_form(material) for material in materials)
         self.compliance = np.array([0.0 if m.bulk_modulus is None else 1 / m.bulk_modulus for m in materials])[self.regions]
         self.shear_moduli = np.array([m.shear_modulus for m in materials])[self.regions]
         self.moduli_at_once = np.array([_instantaneous_modulus(m) for m in materials])[self.regions]
-        most = volume_stiffness * self.moduli_at_once
-        self.volume_stiffness = volume_stiffness * self.shear_moduli / (1 + most * self.compliance)
+        most = self.stabilisation * self.moduli_at_once
+        self.volume_stiffness = self.stabilisation * self.shear_moduli / (1 + most * self.compliance)
 
     def with_relaxation(self, relaxation: RelaxationStep | None) -> Body:
         """The same body in a time step of materials that relax."""
@@ -228,17 +223,13 @@ class Body:
         """The regions of materials without a compiled form."""
         uncompiled = [index for index, form in enumerate(self.forms) if form is None]
         chosen = ((self.materials[index], np.flatnonzero(self.regions == index)) for index in uncompiled)
-        return tuple(
-            InterpretedPart(material, self.space, self.points, mine, volume_stiffness=float(self.volume_stiffness[mine[0]]))
-            for material, mine in chosen
-            if mine.size
-        )
+        return tuple(InterpretedPart(material, self.space, self.points, mine) for material, mine in chosen if mine.size)
 
     def _at(self, part: InterpretedPart, unknowns: Array, state: Kinematics) -> PointState:
         """What a part is computed from."""
         mine, relaxation = part.elements, self.relaxation
         history = (None, None) if relaxation is None else (relaxation.scale[mine], relaxation.stress[:, mine])
-        return PointState(state.F[:, :, mine], self.pressure(unknowns)[mine], *history)
+        return PointState(state.F[:, :, mine], self.pressure(unknowns)[mine], self.volume_resistance[mine], *history)
 
     def _history_stress(self) -> Array:
         return ELASTIC_STEP if self.relaxation is None else self.relaxation.stress

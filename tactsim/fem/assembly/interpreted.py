@@ -21,28 +21,30 @@ CHUNK = 512
 class PointState:
     """Deformation and pressure at the points of some elements, and the coefficients of a time step if the material relaxes.
 
-    ``F`` (3, 3, E, Q), ``pressure`` (E, Q) in Pa, ``scale`` (E,) of the isochoric stress, ``history_stress`` (6, E, Q) in Pa.
+    ``F`` (3, 3, E, Q), ``pressure`` (E, Q) in Pa, ``resistance`` (E,) kappa of `Body` in Pa, ``scale`` (E,) of the isochoric
+    stress, ``history_stress`` (6, E, Q) in Pa.
     """
 
     F: Array
     pressure: Array
+    resistance: Array
     scale: Array | None = None
     history_stress: Array | None = None
 
     def chosen(self, part: slice) -> PointState:
         """That of a part of the elements."""
+        always = (self.F[:, :, part], self.pressure[part], self.resistance[part])
         if self.scale is None or self.history_stress is None:
-            return PointState(self.F[:, :, part], self.pressure[part])
-        return PointState(self.F[:, :, part], self.pressure[part], self.scale[part], self.history_stress[:, part])
+            return PointState(*always)
+        return PointState(*always, self.scale[part], self.history_stress[:, part])
 
 
 class InterpretedPart:
     """The elements (E,) of one material, and their terms of the weak form of `Body`."""
 
-    def __init__(self, material: Material, space: TaylorHood, points: VolumePoints, elements: Array, *, volume_stiffness: float):
+    def __init__(self, material: Material, space: TaylorHood, points: VolumePoints, elements: Array):
         self.material, self.space, self.points, self.elements = material, space, points, elements
         self.compliance = 0.0 if material.bulk_modulus is None else 1 / material.bulk_modulus
-        self.volume_stiffness = volume_stiffness
         self.unknowns = space.element_unknowns()[elements]
 
     def add_residual(self, state: PointState, out: Array) -> None:
@@ -63,7 +65,7 @@ class InterpretedPart:
             B, (count, points) = self._operator(part), weights.shape
             gradient = self.material.volume_change_gradient(here.F).reshape(9, count, points)
             moduli = self.moduli(self._resisting(here)[1]).reshape(9, 9, count, points)
-            resistance, share = self._resistance(here), self._share(here)
+            resistance, share = here.resistance[:, None], self._share(here)
             moduli = np.moveaxis(weights * (moduli + resistance * gradient[:, None] * gradient), (0, 1), (-2, -1))
             slope, weights = np.moveaxis(share * weights * gradient, 0, -1), share * weights
             across = B.transpose(0, 2, 1)
@@ -95,18 +97,14 @@ class InterpretedPart:
             moduli if self.material.small_strain else moduli + np.einsum("ik,JLeq->iJkLeq", np.eye(3), state.history_stress[FULL])
         )
 
-    def _resistance(self, state: PointState) -> Array:
-        """kappa of `Body` in Pa, one for all elements or (E, 1)."""
-        return np.asarray(self.volume_stiffness * (1.0 if state.scale is None else state.scale[:, None]))
-
     def _share(self, state: PointState) -> Array:
-        """Of the volume constraint, beside the resistance to what it leaves; one for all elements or (E, 1)."""
-        return 1 - self._resistance(state) * self.compliance
+        """Of the volume constraint, beside the resistance to what it leaves, (E, 1)."""
+        return 1 - state.resistance[:, None] * self.compliance
 
     def _resisting(self, state: PointState) -> tuple[Array, PointState]:
         """The volume change (E, Q) that the pressure does not ask for, and the state with the pressure that resists it."""
         change = self.material.volume_change(state.F) - self.compliance * state.pressure
-        return change, replace(state, pressure=state.pressure + self._resistance(state) * change)
+        return change, replace(state, pressure=state.pressure + state.resistance[:, None] * change)
 
     def _parts(self) -> Iterator[slice]:
         return (slice(first, first + CHUNK) for first in range(0, len(self.elements), CHUNK))

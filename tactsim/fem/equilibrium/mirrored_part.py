@@ -201,7 +201,7 @@ def _part(body: Body, axes: tuple[int, ...]) -> MirroredPart | None:
 
 def _restricted(body: Body, space: TaylorHood, elements: Array) -> Body:
     """The body of some ``elements`` (E',) in a space of their own; messages number them as before."""
-    order, stabilisation = body.quadrature_order, body.stabilisation
+    order, stabilisation = body.quadrature_order, body.stabilisation[elements]
     part = Body(space, body.materials, body.regions[elements], quadrature_order=order, volume_stiffness=stabilisation)
     part.numbers = body.numbers[elements]
     return part

@@ -11,11 +11,12 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair
 from tactsim.errors import InputError
-from tactsim.fem.assembly.body import VOLUME_STIFFNESS, Body, RelaxationStep
+from tactsim.fem.assembly.body import Body, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.regularising_springs import RegularisingSprings
 from tactsim.fem.assembly.space import FACET_POINTS, TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.assembly.volume_stiffness import block_volume_stiffness
 from tactsim.fem.equilibrium.mirrored_part import SAME_PLACE, mirrored_part
 from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem, free_problem
 from tactsim.fem.equilibrium.newton import Problem
@@ -65,7 +66,7 @@ class GraspModel:
     ):
         self.mesh, self.jaws, self.facets = mesh, dict(zip(JAWS, jaws, strict=True)), facets
         self.space = TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions)
-        self.body = Body(self.space, materials, mesh.regions, volume_stiffness=VOLUME_STIFFNESS)
+        self.body = Body(self.space, materials, mesh.regions, volume_stiffness=block_volume_stiffness(mesh.nodes, mesh.elements))
         self.touchable = touchable_facets(mesh.nodes, facets)
         points = {side: self.space.surface_points(self.touchable[side]) for side in JAWS}
         self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in JAWS}

@@ -12,10 +12,11 @@ from tactsim.array import Array
 from tactsim.contact.penalty import Regularisation
 from tactsim.contact.traction import ContactPair, ContactState
 from tactsim.errors import InputError
-from tactsim.fem.assembly.body import VOLUME_STIFFNESS, Body, RelaxationStep
+from tactsim.fem.assembly.body import Body, RelaxationStep
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.space import Measure, TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
+from tactsim.fem.assembly.volume_stiffness import VOLUME_STIFFNESS
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import ContactLaw, Material, RigidBody
