@@ -69,7 +69,7 @@ def test_an_exponent_of_two_is_neo_hooke(verification_record):
 def body_and_unknowns(measure: str, material: Material, *, relaxing: bool, resisting: float = 0.0) -> tuple[Body, Array]:
     """A jittered box of two materials, deformed; with ``relaxing``, in a step of time of materials that relax.
 
-    ``resisting`` is the stiffness a against what the pressures leave of the volume change, in the first element; in the last it is
+    ``resisting`` is the stiffness a against what the pressures leave of the volume change, in the first element; the last has
     twice as much.
     """
     counts = MEASURES[measure]
