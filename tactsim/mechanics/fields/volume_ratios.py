@@ -16,10 +16,10 @@ POOR_SHARE = 1e-3
 """Part of the volume with poor ratios of which a user is warned: a few points at sharp corners are less and do no harm."""
 
 
-def poor_share(body: Body, error: Array) -> float:
-    """Part of the volume with poor ratios, of which an ``error`` (E, Q) says how far off they are."""
+def poor_share(body: Body, error: Array, off: float = POOR_RATIO) -> float:
+    """Part of the volume whose ratios are ``off`` by more than that, an ``error`` (E, Q) says how far; poor ones by default."""
     weights = body.points.weights
-    return float(weights[np.abs(error) > POOR_RATIO].sum() / weights.sum())
+    return float(weights[np.abs(error) > off].sum() / weights.sum())
 
 
 class VolumeRatios:
