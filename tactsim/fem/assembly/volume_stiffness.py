@@ -16,6 +16,8 @@ MOST = 20.0
 """What slim cells of a block have. As much in wide cells makes blocks too stiff; with 3 in slim ones, fine meshes disagree."""
 SLIM = 0.45
 """Width of a cell over that of the cells in the middle of the block below which a grows."""
+FINE = 0.05
+"""Width of a cell over the least side of its block above which none is slim, 1 mm of 20 mm: coarser edges would be too stiff."""
 GROWTH = 8
 """Power of one over the width with which it grows: cells next to slim ones have little more than wide ones."""
 
@@ -25,11 +27,12 @@ def block_volume_stiffness(nodes: Array, elements: Array) -> Array:
 
     The width of a cell is the geometric mean of its two lesser extents along the sides of the block: cells along an edge of a jaw
     are slim, those in the middle of its face, thin in one direction only, are not. Slim is what is so beside the cells that half
-    of the volume lies in, so that halving all cells changes no a, and errors fall as they would with one a for all.
+    of the volume lies in: to halve all cells of a mesh with fine edges changes no a, and its errors fall as with one for all.
     """
     corners = nodes[elements[:, :4]]
     least = np.sort(np.ptp(corners, axis=1), axis=1)[:, :2]
     width, volume = np.sqrt(least.prod(axis=1)), np.abs(np.linalg.det(corners[:, 1:] - corners[:, :1]))
     order = np.argsort(width)
     usual = width[order][np.searchsorted(np.cumsum(volume[order]), volume.sum() / 2)]
-    return np.clip(VOLUME_STIFFNESS * (SLIM * usual / width) ** GROWTH, VOLUME_STIFFNESS, MOST)
+    slim = min(SLIM * usual, FINE * np.ptp(nodes, axis=0).min())
+    return np.clip(VOLUME_STIFFNESS * (slim / width) ** GROWTH, VOLUME_STIFFNESS, MOST)
