@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 
 from tactsim.model import FrozenModel
 
-Override = str | float | bool | dict[str, str | float | bool | dict[str, str]]
+Override = str | int | float | bool | dict[str, str | int | float | bool | dict[str, str]]
 
 
 class StudyRun(FrozenModel):

@@ -80,3 +80,10 @@ def test_a_refusal_on_the_way_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(Indentation, "begin", refused)
     outcome = simulated(Task("refused", str(CASES / STUDY.case), ()))
     assert (outcome.status, outcome.reason) == ("failed", "no mesh")
+
+
+def test_a_whole_number_that_a_study_sets_stays_one() -> None:
+    """It was written as 2.0, which a count refuses."""
+    text = '{"name": "s", "case": "c.yaml", "common": {"a.steps": 2, "b": 0.5, "c": true}, "runs": [{"id": "r"}]}'
+    study = Study.model_validate_json(text, strict=True)
+    assert study.overrides(study.runs[0]) == ("a.steps=2", "b=0.5", "c=true")
