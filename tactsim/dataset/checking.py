@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from hashlib import sha256
 from pathlib import Path
 
 import numpy as np
@@ -207,7 +208,8 @@ class Faults:
     constant: dict[str, list[int]] = field(default_factory=dict)
     equal: list[int] = field(default_factory=list)
     uncoded: list[int] = field(default_factory=list)
-    seen: dict[bytes, str] = field(default_factory=dict)
+    seen: dict[str, str] = field(default_factory=dict)
+    """Digest of the readings -> case that had them first."""
 
 
 def leaks(store: Store, status: Array) -> Iterator[Finding]:
@@ -263,7 +265,7 @@ def _look(read: ChunkRead, layout: Layout, faults: Faults, codes: int) -> None:
                 faults.infinite.setdefault(variable.name, []).append(number)
             if _may_not_rest(variable) and np.ptp(values) == 0:
                 faults.constant.setdefault(variable.name, []).append(number)
-        key = b"".join(np.ascontiguousarray(sample[variable.name]).tobytes() for variable in readings)
+        key = sha256(b"".join(np.ascontiguousarray(sample[variable.name]).tobytes() for variable in readings)).hexdigest()
         case = str(sample.get("case_id", number))
         faults.equal += [number] if faults.seen.setdefault(key, case) != case else []  # of one case `leaks` tells
 

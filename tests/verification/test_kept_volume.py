@@ -44,7 +44,7 @@ def squeezed(edge_size: float, growth: float, stiffness: float | None, monkeypat
     """The block with cells of ``edge_size`` in m at the jaws, and of one ``stiffness`` or by the rule."""
     with monkeypatch.context() as changed:
         if stiffness is not None:
-            changed.setattr(block_model, "block_volume_stiffness", lambda nodes, elements: stiffness)
+            changed.setattr(block_model, "block_volume_stiffness", lambda nodes, elements, pressed: stiffness)
         grasp = Grasp.model_validate(
             {
                 "block": {"size": SIZE, "tissue": "icf_stable"},

@@ -66,7 +66,9 @@ class GraspModel:
     ):
         self.mesh, self.jaws, self.facets = mesh, dict(zip(JAWS, jaws, strict=True)), facets
         self.space = TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions)
-        self.body = Body(self.space, materials, mesh.regions, volume_stiffness=block_volume_stiffness(mesh.nodes, mesh.elements))
+        pressed = min(min(jaw.width, jaw.depth) - 2 * jaw.fillet for jaw in jaws)
+        stiffness = block_volume_stiffness(mesh.nodes, mesh.elements, pressed)
+        self.body = Body(self.space, materials, mesh.regions, volume_stiffness=stiffness)
         self.touchable = touchable_facets(mesh.nodes, facets)
         points = {side: self.space.surface_points(self.touchable[side]) for side in JAWS}
         self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in JAWS}

@@ -45,6 +45,7 @@ def test_cells_at_edges_that_are_coarse_in_the_block_have_no_more() -> None:
     assert block_volume_stiffness(graded, elements).max() == VOLUME_STIFFNESS
     graded = np.where(nodes < 1, 0.1 * nodes, 0.1 + (nodes - 1) * 3.9 / 3)
     assert block_volume_stiffness(graded, elements).max() == MOST
+    assert block_volume_stiffness(graded, elements, pressed=2.0).max() == VOLUME_STIFFNESS, "under a jaw of half the block"
 
 
 @pytest.mark.parametrize("scale", [1e-3, 0.5])
