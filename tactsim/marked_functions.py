@@ -90,7 +90,7 @@ def marked_function(package: str, family: str, name: str) -> MarkedFunction:
             if error.name is None or error.name.partition(".")[0] != package.partition(".")[0]:
                 raise
             raise IncompleteInstallation(f"{family} {name} of {module} needs {error.name}, which is not installed") from error
-    if not any((known, named) == (family, name) for known, named, _ in _marked):
+    if not _marking(family, name):
         raise UnknownName(family, name, marked_names(package, family))
     return _marked_as(family, name)
 
@@ -101,6 +101,11 @@ def marked_names(package: str, family: str) -> list[str]:
     return sorted({*stated, *(name for known, name, _ in _marked if known == family)})
 
 
+def _marking(family: str, name: str) -> list[str]:
+    """The modules that mark a function of a family by this name."""
+    return sorted(module for known, named, module in _marked if (known, named) == (family, name))
+
+
 def _marked_as(family: str, name: str) -> MarkedFunction:
     """The one function of a family that has this name.
 
@@ -109,7 +114,7 @@ def _marked_as(family: str, name: str) -> MarkedFunction:
     AmbiguousKind
         If two modules mark one.
     """
-    modules = sorted(module for known, named, module in _marked if (known, named) == (family, name))
+    modules = _marking(family, name)
     if len(modules) > 1:
         raise AmbiguousKind(f"two modules mark a {family} {name!r}: {modules[0]} and {modules[1]}; rename one of them")
     return _marked[family, name, modules[0]]
