@@ -118,7 +118,7 @@ class AnnularPunch:
         rises = self.rise(radii)
         highest = int(rises.argmax())
         if highest == 0:
-            return float(rises[0])
+            return self.rise_factor
         around = float(radii[highest - 1]), float(min(radii[highest] + radii[1], self.radius_ratio))
         peak = scipy.optimize.minimize_scalar(lambda r: -float(self.rise(r)), bounds=around, method="bounded")
         return -float(peak.fun)
