@@ -128,6 +128,19 @@ def test_hypotheses_that_cannot_fit_a_factor_are_warned_of_on_plain_tissue() -> 
     assert HypothesesEstimator().estimate(given).factor == pytest.approx(1.25, abs=0.01)
 
 
+def test_model_based_that_cannot_fit_a_factor_says_that_it_took_stiffer_tissue_for_an_inclusion() -> None:
+    """It stated the error of a reference of the same tissue as a factor, and the warning that it allowed for one."""
+    given = replace(read(1.25 * PLAIN), response=response())
+    rigid = ModelBasedEstimator(factor_spread=0.0).estimate(given)
+    assert rigid.factor is None
+    assert "times those of the reference" not in rigid.reason
+    words = str(plain_parts_warning(given, rigid))
+    assert "give a reference of this tissue" in words
+    assert "allows for one common factor" not in words
+    plain = ModelBasedEstimator(factor_spread=0.0).estimate(replace(read(PLAIN), response=response()))
+    assert (plain.present, plain.factor) == (False, None)
+
+
 def test_two_balls_are_stated_with_the_factor_of_the_readings() -> None:
     """The words of one ball, and of none, had it; those of two did not."""
     lumps = sum(10.0 * response().signal(np.array([place]), np.array([4e-3]))[0] for place in (CORNER, (30e-3, 30e-3, 10e-3)))
