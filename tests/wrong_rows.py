@@ -6,8 +6,9 @@ from collections.abc import Iterable
 from typing import Any
 
 from tactsim.validation.comparison import compare_row, judged_row
-from tactsim.validation.endings import READ_BACK, Bound, InsideRange, Outside, Transcribed
+from tactsim.validation.endings import InsideRange, Outside
 from tactsim.validation.inputs import Inputs
+from tactsim.validation.limits import Bound
 from tactsim.validation.table import Row
 
 
@@ -21,8 +22,6 @@ def wrong(row: Row) -> Row:
         other = expected * (1 + 3 * row.ends.within)
     elif isinstance(row.ends, InsideRange):
         other = expected * 1e6
-    elif isinstance(row.ends, Transcribed):
-        other = expected * (1 + 3 * READ_BACK) or 1.0
     else:
         other = expected + 3 * (row.allowed or 1.0)
     text: Any = other if row.unit == "1" else f"{other!r} {row.unit}"

@@ -20,8 +20,9 @@ SUMMARY = "compare with the tables of the thesis and with published problems"
 DESCRIPTION = """\
 Computes every number that the tables (cases/thesis, cases/published) record, and states for each
 row how it ends: reproduced (after an erratum), confirmed, inside a range, outside by a factor,
-contradicted, transcribed, regression, not testable. A known deviation does not fail; a row that
-leaves its class, or is absent, does. Simulations are taken from a cache unless --fresh is given.
+contradicted, transcribed, regression, not testable, or repeated, if another row says the same.
+A known deviation does not fail; a row that leaves its class, or is absent, does. Simulations are
+taken from a cache unless --fresh is given.
 The report is one HTML file that opens from disk, with the same as Markdown and JSON beside it;
 it takes the place of an earlier report, and of nothing else.
 """

@@ -109,7 +109,9 @@ def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
         return f"{words}: they have the opposite sign; forces are positive where the tissue presses; do not trust the place"
     words += f": they are {parts.factor:.3g} times as large, so tissue or sensors are not those of the reference"
     if estimate.factor is None:
-        return f"{words}; the estimate takes that for an inclusion; give a reference of this tissue"
+        return (
+            f"{words}; the estimate allows for no such factor, and may take it for an inclusion; give a reference of this tissue"
+        )
     return f"{words}; the estimate allows for one common factor"
 
 

@@ -166,6 +166,11 @@ def without_error(change: Array, errors: ReferenceErrors) -> bool:
     return float(np.abs(left).max()) <= ROUNDING * float(np.abs(errors.plain).max())
 
 
+def stated_factor(factor: float, spread: float) -> float | None:
+    """The factor of a fit, None if the reference cannot be of another tissue: then what is fitted is the error of its own."""
+    return factor if spread > 0 else None
+
+
 def factor_words(factor: float | None) -> str:
     """What a user must know of a factor; nothing if it may be that of a reference of the same tissue."""
     if factor is None or abs(factor - 1) < WORTH_SAYING:

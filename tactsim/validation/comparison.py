@@ -9,8 +9,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tactsim.errors import TactsimError
-from tactsim.validation.endings import Computed, Interval, NotTestable, Regression, Reproduced, label_of
+from tactsim.validation.endings import REPEATED, NotTestable, Regression, Reproduced, Transcribed, label_of
 from tactsim.validation.inputs import Inputs
+from tactsim.validation.limits import Computed, Interval
 from tactsim.validation.study import RunOutcome
 from tactsim.validation.table import Row, Table
 
@@ -37,7 +38,7 @@ class RowOutcome:
     @property
     def label(self) -> str:
         """The class that it ended in."""
-        return label_of(self.row.ends) if self.held else LEFT
+        return self.row.label if self.held else LEFT
 
     @property
     def shown(self) -> float | tuple[float, float] | None:
@@ -97,7 +98,8 @@ def judged_row(row: Row, computed: Computed | None) -> RowOutcome:
     if not all(math.isfinite(end) for end in ends):
         return RowOutcome(row, None, False, "LEFT: not a finite number", f"{computed}")
     judgement = row.ends.judge(value, row.expected_si, row.unit)
-    words = judgement.ended if judgement.held else f"LEFT: {judgement.ended}"
+    ended = f"{judgement.ended}, {REPEATED}" if row.repeats else judgement.ended
+    words = ended if judgement.held else f"LEFT: {ended}"
     return RowOutcome(row, value, judgement.held, words, reason_of(row))
 
 
@@ -107,10 +109,12 @@ def figures_of(row: Row) -> set[str]:
 
 
 def reason_of(row: Row) -> str:
-    """The reason of a row as its table writes it."""
+    """The reason of a row as its table writes it, and which row it repeats."""
+    again = f"; repeats row {row.repeats}" if row.repeats else ""
     if isinstance(row.ends, Reproduced):
-        return row.ends.within.reason
-    return f"{row.ends.why}; {row.ends.within.reason}" if isinstance(row.ends, Regression) else row.ends.why
+        return row.ends.within.reason + again
+    within = row.ends.within if isinstance(row.ends, Regression | Transcribed) else None
+    return row.ends.why + (f"; {within.reason}" if within else "") + again
 
 
 def _filled(outcome: RowOutcome, computed: Mapping[str, RowOutcome]) -> str:

@@ -3,122 +3,18 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, Self
 
 from pydantic import Field, model_validator
 
 from tactsim.model import FrozenModel
-from tactsim.units import parse_quantity
+from tactsim.validation.limits import Bound, Computed, Interval, Judgement, Tolerance, is_within, judged, number_of
 
 Origin = Literal["thesis", "erratum", "exact", "published", "other_program", "own"]
 """Where the expected number or the claim comes from: the thesis prints it, the errata derive it, a closed form gives it, another
 author published it, another program computed it, or this program did and the row only watches that it does not move."""
-ROUND_OFF = 1e-12
-"""Relative difference of the same number by two roundings."""
 READ_BACK = 1e-6
 """Relative difference by which an input may come back: the fits behind some of them are conditioned like that."""
-
-
-@dataclass(frozen=True)
-class Interval:
-    """What a quantity returns that computes a range instead of a number; in SI."""
-
-    low: float
-    high: float
-
-    def __post_init__(self) -> None:
-        if self.low > self.high:
-            raise ValueError(f"an interval begins at {self.low:g} and ends below that, at {self.high:g}")
-
-    def nearest(self, value: float) -> float:
-        """The value itself if it lies inside, else the nearer end."""
-        return min(max(value, self.low), self.high)
-
-
-Computed = float | Interval
-
-
-@dataclass(frozen=True)
-class Judgement:
-    """Whether a row ended as recorded, and how in words."""
-
-    held: bool
-    ended: str
-
-
-def _judged(held: bool, words: str) -> Judgement:
-    return Judgement(held, words if held else f"was {words}")
-
-
-class Tolerance(FrozenModel):
-    """How far the computed number may be from the expected one, and why."""
-
-    relative: float | None = Field(default=None, ge=0, lt=1)
-    """Part of the expected number."""
-    absolute: str | float | None = None
-    """In the unit of the number."""
-    reason: str = Field(min_length=1)
-    """Why this much and not less."""
-
-    @model_validator(mode="after")
-    def _one(self) -> Self:
-        if (self.relative is None) == (self.absolute is None):
-            raise ValueError("a tolerance is either relative or absolute")
-        return self
-
-    def allowed(self, expected: float, unit: str) -> float:
-        """Largest difference in SI.
-
-        Raises
-        ------
-        ValueError, InvalidQuantity
-            If an absolute tolerance is no quantity of this unit.
-        """
-        if self.relative is not None:
-            return self.relative * abs(expected)
-        return in_si(self.absolute or 0.0, unit)
-
-
-class Bound(FrozenModel):
-    """A limit on one side, and why it is where it is."""
-
-    label: ClassVar[str]
-    above: str | float | None = None
-    """What the computed number exceeds, in its unit."""
-    below: str | float | None = None
-    """What it stays under, in its unit."""
-    why: str = Field(min_length=1)
-    """What that means, and why the limit is where it is."""
-
-    @model_validator(mode="after")
-    def _one(self) -> Self:
-        if (self.above is None) == (self.below is None):
-            raise ValueError("a limit lies either above or below")
-        return self
-
-    @property
-    def limit(self) -> str:
-        """The limit in words."""
-        return f"above {self.above}" if self.above is not None else f"below {self.below}"
-
-    def margin(self, computed: Computed, unit: str) -> float:
-        """How far what was computed, in SI, lies on the recorded side; negative on the other one.
-
-        Raises
-        ------
-        ValueError, InvalidQuantity
-            If the limit is no quantity of this unit.
-        """
-        low, high = (computed.low, computed.high) if isinstance(computed, Interval) else (computed, computed)
-        if self.above is not None:
-            return low - in_si(self.above, unit)
-        return in_si(self.below or 0.0, unit) - high
-
-    def judge(self, computed: Computed, expected: float | None, unit: str) -> Judgement:
-        """Whether the number lies on the recorded side."""
-        del expected
-        return _judged(self.margin(computed, unit) > 0, f"{self.label}, {self.limit}")
 
 
 class Reproduced(FrozenModel):
@@ -135,7 +31,7 @@ class Reproduced(FrozenModel):
     def judge(self, computed: Computed, expected: float | None, unit: str) -> Judgement:
         """Whether the number comes out."""
         words = f"reproduced after {self.after}" if self.after else "reproduced"
-        return _judged(_within(self.within, computed, expected, unit), words)
+        return judged(is_within(self.within, computed, expected, unit), words)
 
 
 class Regression(FrozenModel):
@@ -151,7 +47,7 @@ class Regression(FrozenModel):
 
     def judge(self, computed: Computed, expected: float | None, unit: str) -> Judgement:
         """Whether the number stands where it stood."""
-        return _judged(_within(self.within, computed, expected, unit), "regression")
+        return judged(is_within(self.within, computed, expected, unit), "regression")
 
 
 class RegressionBound(Bound):
@@ -184,7 +80,7 @@ class Outside(FrozenModel):
     def judge(self, computed: Computed, expected: float | None, unit: str) -> Judgement:
         """Whether the deviation is the known one."""
         del unit
-        factor = _number(computed, expected) / expected if expected else math.inf
+        factor = number_of(computed, expected) / expected if expected else math.inf
         held = abs(factor - self.by) <= self.within * self.by
         return Judgement(held, f"outside by {factor:.4g}" + ("" if held else f", was {self.by:.4g}"))
 
@@ -218,21 +114,29 @@ class InsideRange(FrozenModel):
         """Whether it lies inside."""
         del unit
         held = isinstance(computed, Interval) and expected is not None and computed.low <= expected <= computed.high
-        return _judged(held, "inside a range")
+        return judged(held, "inside a range")
 
 
 class Transcribed(FrozenModel):
-    """An input of the thesis read back: it shows that it was copied well, and nothing else."""
+    """An input of the thesis, or one equation of it with the same inputs on both sides, read back: it shows that it was copied
+    well, and nothing else."""
 
     label: ClassVar[str] = "transcribed"
     kind: Literal["transcribed"] = "transcribed"
     """Ending."""
+    within: Tolerance | None = None
+    """How near it must come if what is expected is given to few digits; by default `READ_BACK`."""
     why: str = Field(min_length=1)
-    """Why nothing is computed."""
+    """Why nothing is found out."""
+
+    @property
+    def allowance(self) -> Tolerance:
+        """How near it must come."""
+        return self.within or Tolerance(relative=READ_BACK, reason="read back")
 
     def judge(self, computed: Computed, expected: float | None, unit: str) -> Judgement:
         """Whether it comes back."""
-        return _judged(_within(Tolerance(relative=READ_BACK, reason="read back"), computed, expected, unit), "transcribed")
+        return judged(is_within(self.allowance, computed, expected, unit), "transcribed")
 
 
 class NotTestable(FrozenModel):
@@ -250,6 +154,8 @@ Ending = Annotated[
     Field(discriminator="kind"),
 ]
 AFTER = "reproduced after an erratum"
+REPEATED = "repeated"
+"""The class of a row that says again what another one says."""
 LABELS = (
     Reproduced.label,
     AFTER,
@@ -260,6 +166,7 @@ LABELS = (
     Transcribed.label,
     Regression.label,
     NotTestable.label,
+    REPEATED,
 )
 """The classes in which rows are counted."""
 
@@ -267,31 +174,3 @@ LABELS = (
 def label_of(ending: Ending) -> str:
     """The class of an ending, one of `LABELS`."""
     return AFTER if isinstance(ending, Reproduced) and ending.after else ending.label
-
-
-def in_si(value: str | float, unit: str) -> float:
-    """A number as a table writes it in SI: text with a unit, or a plain number for what has none.
-
-    Raises
-    ------
-    ValueError
-        If a plain number stands for what has a unit.
-    InvalidQuantity
-        If the text is no quantity of this unit.
-    """
-    if isinstance(value, str):
-        return parse_quantity(value, unit)
-    if unit != "1":
-        raise ValueError(f"{value:g} has no unit; expected text such as '{value:g} {unit}'")
-    return float(value)
-
-
-def _number(computed: Computed, expected: float | None) -> float:
-    """The number itself; of an interval the end nearer to what is expected."""
-    return computed.nearest(expected or 0.0) if isinstance(computed, Interval) else computed
-
-
-def _within(tolerance: Tolerance, computed: Computed, expected: float | None, unit: str) -> bool:
-    if isinstance(computed, Interval) or expected is None:
-        return False
-    return abs(computed - expected) <= tolerance.allowed(expected, unit) + ROUND_OFF * abs(expected)

@@ -34,6 +34,7 @@ COLOURS = {
     "transcribed": "#999999",
     "regression": "#555555",
     "not testable": "#cccccc",
+    "repeated": "#e6e6e6",
     "left": "#000000",
 }
 """Colours that the colour-blind can tell apart (Okabe and Ito 2008, jfly.uni-koeln.de/color), greys for what proves nothing."""

@@ -11,7 +11,8 @@ from typing import Any, get_args
 from tactsim.outside.text import aligned, markdown_table
 from tactsim.units import format_quantity
 from tactsim.validation.comparison import LEFT, RowOutcome, TableOutcome, figure_text
-from tactsim.validation.endings import AFTER, LABELS, Bound, Origin, Outside, Regression, Reproduced, Tolerance
+from tactsim.validation.endings import AFTER, LABELS, REPEATED, Origin, Outside, Regression, Reproduced, Transcribed
+from tactsim.validation.limits import Bound, Tolerance
 from tactsim.validation.loading import LoadedTables
 from tactsim.validation.pictures import parts, placed_pictures
 from tactsim.version import __version__
@@ -31,9 +32,10 @@ MEANINGS = {
     "inside a range": "the expected number lies inside an interval that was computed without it",
     "outside": "it does not come out; by what factor, and the presumed cause",
     "contradicted": "a claim does not hold",
-    "transcribed": "an input read back: it shows that it was copied well, and nothing else",
+    "transcribed": "an input, or an equation with the same inputs on both sides: it was copied well, and nothing else is shown",
     "regression": "a number of this program: it shows that the program moved, never that it is right",
     "not testable": "nothing to compare, and why",
+    REPEATED: "it follows from another row, which its reason names: held as it ended, and not counted a second time",
     LEFT: "it did not end as recorded: the validation fails",
 }
 
@@ -225,7 +227,7 @@ def _digits(expected: str) -> int:
 
 
 def _allowed(ending: Any) -> str:
-    if isinstance(ending, Reproduced | Regression):
+    if isinstance(ending, Reproduced | Regression | Transcribed) and ending.within is not None:
         return _width(ending.within)
     if isinstance(ending, Outside):
         return f"{ending.by:.4g} ± {100 * ending.within:.2g} %"

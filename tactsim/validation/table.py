@@ -10,8 +10,19 @@ from pydantic import Field, model_validator
 from tactsim.model import FrozenModel
 from tactsim.units import parse_quantity
 from tactsim.validation.calls import AnyCall, Call
-from tactsim.validation.endings import Bound, Ending, NotTestable, Origin, Regression, RegressionBound, Reproduced, in_si
+from tactsim.validation.endings import (
+    REPEATED,
+    Ending,
+    NotTestable,
+    Origin,
+    Regression,
+    RegressionBound,
+    Reproduced,
+    Transcribed,
+    label_of,
+)
 from tactsim.validation.inputs import Inputs
+from tactsim.validation.limits import Bound, in_si
 from tactsim.validation.study import Study
 
 
@@ -34,6 +45,8 @@ class Row(FrozenModel):
     """How it is computed here; what is not testable goes without."""
     ends: Ending
     """How the row is known to end."""
+    repeats: str | None = None
+    """Row of the same table from which this one follows, so that it is held and shown, but not counted beside it."""
 
     @model_validator(mode="after")
     def _complete(self) -> Self:
@@ -44,7 +57,7 @@ class Row(FrozenModel):
         if self.evaluate is None:
             raise ValueError("only what is not testable may lack how it is evaluated")
         if isinstance(self.ends, Bound):
-            self.ends.margin(0.0, self.unit)
+            self.ends.judge(0.0, None, self.unit)
         elif self.expected is None:
             raise ValueError(f"a row that ends as {self.ends.label} needs what is expected")
         _ = self.expected_si, self.allowed
@@ -53,6 +66,11 @@ class Row(FrozenModel):
         if (self.origin == "own") != isinstance(self.ends, Regression | RegressionBound):
             raise ValueError("an own number is a regression, and a regression has no other origin")
         return self
+
+    @property
+    def label(self) -> str:
+        """The class in which it is counted if it ends as recorded."""
+        return REPEATED if self.repeats else label_of(self.ends)
 
     @property
     def unit(self) -> str:
@@ -74,9 +92,10 @@ class Row(FrozenModel):
     @property
     def allowed(self) -> float | None:
         """Largest difference in SI of a number that must come out."""
-        if not isinstance(self.ends, Reproduced | Regression) or self.expected_si is None:
+        if not isinstance(self.ends, Reproduced | Regression | Transcribed) or self.expected_si is None:
             return None
-        return self.ends.within.allowed(self.expected_si, self.unit)
+        within = self.ends.allowance if isinstance(self.ends, Transcribed) else self.ends.within
+        return within.allowed(self.expected_si, self.unit)
 
     def shown(self, value: float) -> float:
         """A number in SI in `shown_unit`."""
@@ -137,6 +156,14 @@ class Table(FrozenModel):
             repeated = {name for name in names if names.count(name) > 1}
             if repeated:
                 raise ValueError(f"{what} with the same name: {', '.join(sorted(repeated))}")
+        return self
+
+    @model_validator(mode="after")
+    def _repeated_once(self) -> Self:
+        counted = {row.id for row in self.rows if row.repeats is None}
+        for row in self.rows:
+            if row.repeats is not None and row.repeats not in counted:
+                raise ValueError(f"the row {row.id} repeats {row.repeats}, which is no row that counts")
         return self
 
     @model_validator(mode="after")

@@ -23,8 +23,8 @@ from tactsim.registry import forget
 from tactsim.units import is_unit, parse_quantity
 from tactsim.validation import compare, load_tables
 from tactsim.validation.calls import INPUTS, PACKAGE, call_class, descriptions
-from tactsim.validation.endings import Interval
 from tactsim.validation.inputs import Inputs
+from tactsim.validation.limits import Interval
 from tactsim.validation.table import Row, Table
 
 FUNCTIONS = [marked for family in ("quantity", "drawing") for marked in marked_functions(PACKAGE, family).values()]

@@ -14,7 +14,6 @@ from thesis_tables import CASES, shipped_names, shipped_tables
 
 from tactsim.validation import compare
 from tactsim.validation.comparison import FIGURE, reason_of
-from tactsim.validation.endings import label_of
 from tactsim.validation.execution import Task, simulated
 from tactsim.validation.pictures import placed_pictures
 from tactsim.validation.report import row_values
@@ -65,7 +64,7 @@ def is_kept(row: Row, kept: dict[str, Any]) -> bool:
     pattern = re.escape(reason_of(row))
     for placeholder in {match[0] for match in FIGURE.finditer(reason_of(row))}:
         pattern = pattern.replace(re.escape(placeholder), ".+")
-    words = {"quantity": row.quantity, "place": row.place, "from": row.origin, "class": label_of(row.ends)}
+    words = {"quantity": row.quantity, "place": row.place, "from": row.origin, "class": row.label}
     return all(kept[key] == value for key, value in words.items()) and re.fullmatch(pattern, kept["why"]) is not None
 
 

@@ -36,6 +36,7 @@ from tactsim.localization.reference_errors import (
     ReferenceFit,
     factor_words,
     fitted,
+    stated_factor,
     whitened,
     without_error,
 )
@@ -151,18 +152,15 @@ class HypothesesEstimator(Estimator):
         likeliest = max(probabilities, key=lambda name: probabilities[name])
         probability, best = float(np.clip(1 - probabilities["none"], 0.0, 1.0)), int(np.argmax(densities[likeliest]))
         if likeliest == "none":
-            factor = self._stated(fits[best].bare_factor)
+            factor = stated_factor(fits[best].bare_factor, self.factor_spread)
             reason = f"no inclusion (probability {probabilities['none']:.3g}){factor_words(factor)}"
             return Estimate(False, (), reason, probability, probabilities, factor)
-        cell, factor = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes]), self._stated(fits[best].factor)
+        cell = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes])
+        factor = stated_factor(fits[best].factor, self.factor_spread)
         chosen = explained[likeliest][best]
         inclusions = likely_bodies(chosen.bodies, chosen.candidates, cell)
         reason = f"{WORDS[likeliest]} with a probability of {probabilities[likeliest]:.3g}{factor_words(factor)}"
         return Estimate(True, inclusions, reason, probability, probabilities, factor)
-
-    def _stated(self, factor: float) -> float | None:
-        """A factor of a fit, None if the reference cannot be of another tissue: then none is fitted."""
-        return factor if self.factor_spread > 0 else None
 
     def _priors(self, readings: Readings) -> list[ReferenceErrors]:
         """Errors of a reference of the same tissue, and of another."""

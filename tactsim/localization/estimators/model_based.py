@@ -35,6 +35,7 @@ from tactsim.localization.reference_errors import (
     ReferenceFit,
     factor_words,
     fitted,
+    stated_factor,
     whitened,
     without_error,
 )
@@ -138,8 +139,10 @@ class ModelBasedEstimator(Estimator):
         fit = max(fits, key=lambda one: one.likelihood)
         probability = self._probability(fits)
         if probability < 0.5:
+            bare = stated_factor(fit.bare_factor, self.factor_spread)
             reason = f"no inclusion (probability {1 - probability:.3g})"
-            return Estimate(False, (), reason + factor_words(fit.bare_factor), probability, factor=fit.bare_factor)
+            return Estimate(False, (), reason + factor_words(bare), probability, factor=bare)
+        factor = stated_factor(fit.factor, self.factor_spread)
         samples = np.column_stack([candidates.centers, candidates.radii, fit.contrasts / fit.factor])
         shape = tuple(map(len, readings.response.axes))
         region = CellRegion(
@@ -151,13 +154,12 @@ class ModelBasedEstimator(Estimator):
         pair = self._pair(readings, fit, between=not region.contains(mean[:3]))
         near = pair is not None and _apart(pair) < readings.layout.pitch
         if pair is not None and not near:
-            reason = pair.reason + factor_words(fit.factor)
-            return replace(pair, reason=reason, probability=probability, factor=fit.factor)
+            return replace(pair, reason=pair.reason + factor_words(factor), probability=probability, factor=factor)
         ball = EstimatedInclusion("sphere", (x, y, z), radius, contrast, covariance, region)
         reason = f"a {'softer' if contrast < 0 else 'stiffer'} ball with a probability of {probability:.3g}"
         if pair is not None:
             reason += f", though {pair.reason}; nearer to each other than the taxels, they may be one of another shape"
-        return Estimate(True, (ball,), reason + factor_words(fit.factor), probability, factor=fit.factor)
+        return Estimate(True, (ball,), reason + factor_words(factor), probability, factor=factor)
 
     def _pair(self, readings: Readings, fit: ReferenceFit, *, between: bool) -> Estimate | None:
         """Two balls, if they are likelier than the one of a ``fit`` on the finest grid; None if not.

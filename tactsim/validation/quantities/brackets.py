@@ -11,8 +11,8 @@ from tactsim.interfaces import drawing, quantity
 from tactsim.model import FrozenModel
 from tactsim.units import parse_quantity
 from tactsim.validation.curves import Data, Title
-from tactsim.validation.endings import Interval
 from tactsim.validation.inputs import Inputs, RunName, StudyName
+from tactsim.validation.limits import Interval
 from tactsim.validation.study import RunOutcome
 
 Area = Literal["annulus", "disc", "both"]

@@ -122,22 +122,6 @@ def _stretches(smallest: float) -> Array:
     return np.linspace(smallest, 1.0, POINTS + 1)[:-1]
 
 
-@quantity(unit="Pa")
-def fitted_constant(material: SetName, form: FitForm, constant: str) -> float:
-    """A constant in Pa of a least-squares fit to the uniaxial compression curve of a set (3.1.9 with c11).
-
-    Parameters
-    ----------
-    constant : name of the constant
-
-    Raises
-    ------
-    UnknownName
-        If there is no such set, form or constant.
-    """
-    return _constant(fitted(material, form).material, constant)
-
-
 @quantity(unit="1")
 def fit_error(material: SetName, form: FitForm, measure: Measure = "max") -> float:
     """Relative error of the nominal stress of a fit to the uniaxial compression curve of a set.

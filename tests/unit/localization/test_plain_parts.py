@@ -43,7 +43,7 @@ def test_stiffer_tissue_is_a_warning_with_its_factor() -> None:
     words = plain_parts_warning(read(1.25 * PLAIN), NOTHING)
     assert words is not None
     assert "1.25 times as large" in words
-    assert "takes that for an inclusion" in words
+    assert "allows for no such factor, and may take it for an inclusion" in words
     assert "allows for one common factor" in str(plain_parts_warning(read(1.25 * PLAIN), replace(NOTHING, factor=1.25)))
 
 
@@ -126,6 +126,19 @@ def test_hypotheses_that_cannot_fit_a_factor_are_warned_of_on_plain_tissue() -> 
     assert estimate.factor is None, "it allows for none"
     assert "give a reference of this tissue" in str(plain_parts_warning(given, estimate))
     assert HypothesesEstimator().estimate(given).factor == pytest.approx(1.25, abs=0.01)
+
+
+def test_model_based_that_states_no_factor_is_not_said_to_allow_for_one() -> None:
+    """It stated the error of a reference of the same tissue as a factor, and the warning that it allowed for one."""
+    given = replace(read(1.25 * PLAIN), response=response())
+    rigid = ModelBasedEstimator(factor_spread=0.0).estimate(given)
+    assert rigid.factor is None
+    assert "times those of the reference" not in rigid.reason
+    words = str(plain_parts_warning(given, rigid))
+    assert "give a reference of this tissue" in words
+    assert "allows for one common factor" not in words
+    plain = ModelBasedEstimator(factor_spread=0.0).estimate(replace(read(PLAIN), response=response()))
+    assert (plain.present, plain.factor) == (False, None)
 
 
 def test_two_balls_are_stated_with_the_factor_of_the_readings() -> None:

@@ -7,8 +7,10 @@ from pathlib import Path
 import pytest
 from thesis_tables import TABLE, write_tables
 
+from tactsim.errors import CaseError
 from tactsim.validation import RowOutcome, compare, load_tables
-from tactsim.validation.endings import Interval
+from tactsim.validation.limits import Interval
+from tactsim.validation.report import COUNT_HEADER, Validation, count_rows
 from tactsim.validation.study import RunOutcome
 
 
@@ -125,3 +127,52 @@ def test_a_figure_that_no_row_has_is_a_fault(tmp_path: Path) -> None:
     assert loaded.faults == ("small: the reason of pressure has a figure {rnus}, which is no row of the table",)
     studies = {"icf": (run("a", 20e3), run("b", 40e3))}
     assert "{rnus} runs" in compare("small", loaded.tables["small"], tmp_path, studies).rows[0].reason
+
+
+def test_a_row_that_repeats_another_is_held_and_shown_but_not_counted_beside_it(tmp_path: Path) -> None:
+    text = TABLE.replace("meant}\n", "meant}\n    repeats: stiffness\n")
+    loaded = load_tables(write_tables(tmp_path, text))
+    outcome = compare("small", loaded.tables["small"], tmp_path, {})
+    first, again, _ = outcome.rows
+    assert (first.label, again.label, again.ended) == ("reproduced", "repeated", "outside by 0.5, repeated")
+    assert again.reason == "half the displacement was meant; repeats row stiffness"
+    whole = dict(zip(COUNT_HEADER, count_rows(Validation(loaded, (outcome,)))[-1], strict=True))
+    assert (whole["reproduced"], whole["outside"], whole["repeated"]) == (1, 0, 1)
+    (left,) = [row for row in outcomes(tmp_path, text.replace("250 N/m", "240 N/m")) if not row.held]
+    assert (left.row.id, left.label) == ("known", "left")
+
+
+@pytest.mark.parametrize("of", ["stifness", "known"])
+def test_a_row_repeats_one_that_counts(tmp_path: Path, of: str) -> None:
+    text = TABLE.replace("meant}\n", f"meant}}\n    repeats: {of}\n")
+    with pytest.raises(CaseError, match=f"known repeats {of}, which is no row that counts"):
+        load_tables(write_tables(tmp_path, text))
+
+
+@pytest.mark.parametrize(
+    ("resolution", "ended"),
+    [
+        ("", "confirmed, above 0 N/m"),
+        ("resolution: 120 N/m, ", "confirmed, above 0 N/m"),
+        ("resolution: 130 N/m, ", "confirmed, above 0 N/m, unseen at a resolution of 130 N/m"),
+    ],
+)
+def test_a_sign_says_whether_sensors_could_see_it(tmp_path: Path, resolution: str, ended: str) -> None:
+    text = TABLE.replace("{kind: outside, by: 0.5, within: 0.01,", f"{{kind: confirmed, above: 0 N/m, {resolution}")
+    assert outcomes(tmp_path, text)[1].ended == ended
+
+
+def test_a_resolution_has_the_unit_of_the_number(tmp_path: Path) -> None:
+    text = TABLE.replace("{kind: outside, by: 0.5, within: 0.01,", "{kind: confirmed, above: 0 N/m, resolution: 1 mm,")
+    with pytest.raises(CaseError, match="1 mm"):
+        load_tables(write_tables(tmp_path, text))
+
+
+def test_what_is_transcribed_comes_back_to_round_off_or_to_the_digits_given(tmp_path: Path) -> None:
+    ends = "{kind: reproduced, within: {relative: 0.001, reason: a quotient}}"
+    given = "{kind: transcribed, within: {absolute: 0.5 N/m, reason: given to three digits}, why: on both sides}"
+    exact = "{kind: transcribed, why: on both sides}"
+    for expected, new, held in (("125.4", given, True), ("125.6", given, False), ("125.4", exact, False), ("125", exact, True)):
+        row = outcomes(tmp_path, TABLE.replace("125 N/m", f"{expected} N/m").replace(ends, new))[0]
+        assert (row.held, row.label) == (held, "transcribed" if held else "left")
+    assert outcomes(tmp_path, TABLE.replace(ends, given))[0].reason == "on both sides; given to three digits"
