@@ -224,6 +224,37 @@ def silent_about_errors() -> list[str]:
     return [f.place for f in functions(public=True) if not says_raises(f) and raises(f.node)]
 
 
+def classes_silent_about_errors() -> list[str]:
+    """Public classes that raise as they are made and whose docstring does not name the error, nor a base class of it."""
+    made = [
+        (c, part)
+        for c in definitions()
+        if isinstance(c.node, ast.ClassDef) and c.public
+        for part in c.node.body
+        if isinstance(part, FUNCTIONS) and part.name in ("__init__", "__post_init__")
+    ]
+    return [
+        f"{c.place}: {name}"
+        for c, part in made
+        for name in sorted(errors_raised(part))
+        if not {base.__name__ for base in getattr(errors, name).__mro__[:-1]} & words_of(c)
+    ]
+
+
+def words_of(definition: Definition) -> set[str]:
+    return set(re.findall(r"\w+", ast.get_docstring(definition.node) or ""))
+
+
+def time_limits_left_unsaid() -> list[str]:
+    """Public functions that look at the time limit and do not say that they end when it has passed."""
+    return [
+        f.place
+        for f in functions(public=True)
+        if any(isinstance(node, ast.Name) and node.id == "check_time" for node in own_nodes(f.node))
+        and not {"OutOfTime", "Unfinished", "TactsimError"} & named_errors(f)
+    ]
+
+
 def errors_left_unsaid() -> list[str]:
     """Errors of this package that a public function raises and that its section neither names nor names a base class of."""
     return [
@@ -327,6 +358,8 @@ RULES: list[Callable[[], list[str]]] = [
     large_classes,
     undocumented,
     silent_about_errors,
+    classes_silent_about_errors,
+    time_limits_left_unsaid,
     errors_left_unsaid,
     shapes_left_unsaid,
     other_ends_of_runs,
@@ -352,6 +385,8 @@ BROKEN = {
     large_classes: "class A:\n" + "".join(f"    def m{k}(self): ...\n" for k in range(11)),
     undocumented: '"""A module."""\ndef f(): ...',
     silent_about_errors: 'def f():\n    """F."""\n    raise ValueError',
+    classes_silent_about_errors: 'class A:\n    """A."""\n    def __post_init__(self):\n        raise InvalidQuantity',
+    time_limits_left_unsaid: 'def f():\n    """F."""\n    check_time()',
     errors_left_unsaid: 'def f():\n    """F.\n\n    Raises\n    ------\n    CaseError\n    """\n    raise StorageError',
     shapes_left_unsaid: 'def f(a: Array | None) -> None:\n    """A of b."""',
     other_ends_of_runs: "try:\n    a = 1\nexcept (ValueError, KeyboardInterrupt):\n    pass",

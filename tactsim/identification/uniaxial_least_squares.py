@@ -100,7 +100,13 @@ class LeastSquares:
         return constants
 
     def fitted_basis(self, data: Array) -> Array:
-        """Directions (n, k) of the residuals along which the data y (m,) alone decide: Q but for the conditions that hold z."""
+        """Directions (n, k) of the residuals along which the data y (m,) alone decide: Q but for the conditions that hold z.
+
+        Raises
+        ------
+        ConvergenceError
+            If the search for the nearest does not end.
+        """
         if self.normals is None:
             return self.basis
         pushed = self.projected(data)

@@ -72,7 +72,13 @@ class AnyCall(Registered):
         return value if isinstance(value, Call) else super().read(value, info)
 
     def kinds(self) -> dict[str, Any]:
-        """Name -> calls of the functions whose modules can be loaded."""
+        """Name -> calls of the functions whose modules can be loaded.
+
+        Raises
+        ------
+        InputError
+            If a parameter of a function has no type or cannot be passed by its name.
+        """
         calls = {}
         for name in marked_names(PACKAGE, self.family):
             with suppress(IncompleteInstallation):

@@ -22,7 +22,7 @@ READ_BACK = 1e-6
 
 @dataclass(frozen=True)
 class Interval:
-    """What a quantity returns that computes a range instead of a number; in SI."""
+    """What a quantity returns that computes a range instead of a number, in SI; a ValueError if ``low`` is above ``high``."""
 
     low: float
     high: float

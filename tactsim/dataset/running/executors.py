@@ -141,7 +141,15 @@ def _outcome(answer: Answer[tuple[int, ...]]) -> TaskOutcome:
 
 
 class Cluster(Executor):
-    """A client of a Dask scheduler; losing it ends the sweep, losing a worker does not."""
+    """A client of a Dask scheduler; losing it ends the sweep, losing a worker does not.
+
+    Raises
+    ------
+    InputError
+        If Dask is not installed, or ``address`` is not of the form HOST:PORT.
+    StorageError
+        If no scheduler answers at the address.
+    """
 
     def __init__(self, text: str, address: str, *, folder: str | None = None):
         try:
@@ -169,7 +177,15 @@ class Cluster(Executor):
         self._tasks[self._client.submit(computed, self._text, samples, folder=self._folder, pure=False)] = samples
 
     def wait(self, seconds: float) -> list[TaskOutcome]:
-        """What the cluster finished, and the tasks that it gave up."""
+        """What the cluster finished, and the tasks that it gave up.
+
+        Raises
+        ------
+        CaseError
+            If the sweep itself is at fault.
+        StorageError
+            If the cluster cannot compute a task.
+        """
         import distributed
 
         if not self._tasks:

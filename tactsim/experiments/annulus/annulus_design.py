@@ -103,7 +103,13 @@ class AnnulusDesign(Experiment):
         return cls(ratios=(0.1, 0.5), recesses=(0.1e-3, 0.7e-3), forces=(1.0, 2.0), times=(0.5, 5.0))
 
     def annulus(self, ratio: float) -> ViscoelasticAnnulus:
-        """The contact of an annulus of this radius ratio."""
+        """The contact of an annulus of this radius ratio.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the ratio is out of its range.
+        """
         slenderness = self.outer_radius / self.thickness if self.thickness else 0.0
         return ViscoelasticAnnulus(
             self.outer_radius,

@@ -33,6 +33,13 @@ def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
 
     Without a tolerance of its own, a grasp gets one at its largest closing or force with which it misses as little force as a
     success may.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the histories ask for too many steps.
+    InputError
+        If a jaw does not meet the block.
     """
     start = TimedState.at_rest(
         model.body, model.start(experiment.contact, regularisation(experiment)), 1 + len(experiment.lumens)

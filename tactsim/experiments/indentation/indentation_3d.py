@@ -127,7 +127,13 @@ class Indentation3D(DisplacedSetup, Experiment):
         return replace(super().control(), few_iterations=FEW_ITERATIONS, many_iterations=MANY_ITERATIONS)
 
     def model(self) -> SolidModel:
-        """The finite element model in 3D, the body's axis at the origin of x and y."""
+        """The finite element model in 3D, the body's axis at the origin of x and y.
+
+        Raises
+        ------
+        InputError
+            If the mesh would have too many elements or unknowns.
+        """
         from tactsim.mechanics.models.solid_model import SolidModel
 
         section, symmetry = self.section(), self.symmetry

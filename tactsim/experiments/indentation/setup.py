@@ -226,7 +226,13 @@ class IndentationSetup(FrozenModel):
         return GradedSection(specimen, self.mesh, shape, rims=rims, reach=reach, usual=usual)
 
     def model(self) -> PressedModel:
-        """The finite element model of the tissue."""
+        """The finite element model of the tissue.
+
+        Raises
+        ------
+        InputError
+            If the mesh would have too many elements.
+        """
         from tactsim.mechanics.models.section_model import SectionModel
 
         section, specimen = self.section(), self.specimen

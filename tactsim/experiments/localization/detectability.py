@@ -207,7 +207,17 @@ class Detectability(Experiment):
 
 
 def coarse_response(setup: GraspSetup) -> LumpResponse:
-    """The response of the taxels of a grasp on a coarse grid of centres and radii."""
+    """The response of the taxels of a grasp on a coarse grid of centres and radii.
+
+    Raises
+    ------
+    InputError
+        If the grasp has an inclusion.
+    ConvergenceError
+        If no step of its history converges.
+    OutOfTime
+        If its time has passed, or it was stopped.
+    """
     from tactsim.experiments.localization.lump_sensitivity import sensitivity
 
     size = setup.block.size

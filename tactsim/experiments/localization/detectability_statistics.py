@@ -34,7 +34,13 @@ def unit_templates(response: LumpResponse, every: int) -> Array:
 
 
 def false_alarm_threshold(templates: Array, rate: float, *, draws: int, seed: int) -> float:
-    """What the largest ``|z|`` of the templates (n, taxels) exceeds in a share ``rate`` of seeded draws of errors alone."""
+    """What the largest ``|z|`` of the templates (n, taxels) exceeds in a share ``rate`` of seeded draws of errors alone.
+
+    Raises
+    ------
+    OutOfTime
+        If the time limit has passed, or another thread has stopped the computation.
+    """
     generator = np.random.default_rng(seed)
     largest = []
     for begin in range(0, draws, BLOCK_OF_DRAWS):

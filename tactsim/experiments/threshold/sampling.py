@@ -118,7 +118,13 @@ class ApproachSampling:
         trials: int,
         seed: tuple[int, ...],
     ) -> list[Trials]:
-        """Reports for each low pass with its trigger, all from the same recordings; without noise one trial for each phase."""
+        """Reports for each low pass with its trigger, all from the same recordings; without noise one trial for each phase.
+
+        Raises
+        ------
+        OutOfTime
+            If the time limit has passed, or another thread has stopped the computation.
+        """
         blocks = -(-trials // BLOCK)
         reports: list[list[Threshold]] = [[] for _ in low_passes]
         touches = []
@@ -136,6 +142,11 @@ class ApproachSampling:
         """Error in N in continuous time, without noise and rounding; None if nothing is reported.
 
         With or without filter; without ``films`` both sensors conduct what their lines say.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the level is not positive or not finite.
         """
         converter = self.sensor.chain.converter
         fine = Converter(low=converter.low, high=converter.high, bits=32)

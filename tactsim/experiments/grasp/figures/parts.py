@@ -86,7 +86,13 @@ class LoadedTaxels:
 
 
 def loaded_taxels(result: Result) -> LoadedTaxels:
-    """The taxels at the last accepted step, or at the moment that the scene names."""
+    """The taxels at the last accepted step, or at the moment that the scene names.
+
+    Raises
+    ------
+    InputError
+        If the result does not hold pressures and forces of taxels as numbers in arrays of one shape.
+    """
     pressures, forces = (dict(zip(JAWS, jaws_at_end(result, name), strict=True)) for name in (TAXEL_PRESSURE, TAXEL_FORCE))
     return LoadedTaxels(result.scene_as(GraspScene), pressures, forces)
 
