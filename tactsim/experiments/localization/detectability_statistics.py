@@ -7,6 +7,8 @@ With forces d whose errors are Gaussian of standard deviation :math:`\sigma`, ea
 
 for a ball of contrast c, and around zero without one. A ball is found if the largest :math:`|z|` over all candidates exceeds a
 threshold; ``false_alarm_threshold`` finds it by seeded draws, as the candidates depend on each other.
+
+Source: G. L. Turin 1960, doi:10.1109/TIT.1960.1057571, for the filter.
 """
 
 from __future__ import annotations

@@ -21,6 +21,9 @@ class SensorContact:
     .. math:: P = P^* d / d^*, \qquad P_s = k_s \frac{L}{d^*} (d - d^*)_+
 
     with the threshold at force P* and displacement d*, and k_s of a solid punch of the hole's radius.
+
+    Source: thesis, eq. 4.2.21: a flat face on a linear solid meets a force in proportion to its displacement; the punch after
+    Sneddon 1965, doi:10.1016/0020-7225(65)90019-4.
     """
 
     force: float
