@@ -32,7 +32,7 @@ MEANINGS = {
     "outside": "it does not come out; by what factor, and the presumed cause",
     "contradicted": "a claim does not hold",
     "transcribed": "an input read back: it shows that it was copied well, and nothing else",
-    "regression": "a number of this program: it shows that the program moved, never that it is right",
+    "regression": "a number of this program: it shows that the program has changed, never that it is right",
     "not testable": "nothing to compare, and why",
     LEFT: "it did not end as recorded: the validation fails",
 }

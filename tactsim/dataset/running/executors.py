@@ -24,7 +24,7 @@ ADDRESS = re.compile(r"([a-z]+://)?([^\s/:]+|\[[0-9a-fA-F:]+\]):\d{1,5}")
 CONNECTING = 30.0
 """Seconds to wait for the scheduler."""
 WORTH_A_PROCESS = 8.0
-"""Time in s that a short sweep must take for another process to pay, which takes 3 to 5 s to begin, and from the first's core."""
+"""Time in s that a short sweep must take before another process pays: it takes 3 to 5 s to begin, on the core of the first."""
 SHORT = 8
 """Samples for each process below which a sweep is short."""
 TASKS_PER_THREAD = 2
@@ -199,7 +199,7 @@ class Cluster(Executor):
         return [self._outcome(future, self._tasks.pop(future)) for future in done]
 
     def close(self) -> None:
-        """Leaves the cluster; once is enough."""
+        """Leaves the cluster; a second call does nothing."""
         if self._client.status == "closed":
             return
         self._client.cancel(list(self._tasks))

@@ -41,8 +41,8 @@ class AnnulusDesign(Experiment):
     .. math:: \epsilon = \frac{P J(t)}{8 a \kappa}, \quad \text{rise} = \rho\, \epsilon \ge L \text{ where the tissue touches}
 
     with force factor kappa and touch factor rho of the exact contact: the largest rise in the hole, which is on the axis but for
-    layers thin beside it. Thesis section 4.7 takes eps itself for the rise. What would press the annulus to the base of a layer
-    has no value.
+    layers thin beside it. Thesis section 4.7 takes eps itself for the rise. Where the annulus would be pressed to the base of a
+    layer there is no value.
     """
 
     kind: Literal["annulus_design"] = "annulus_design"

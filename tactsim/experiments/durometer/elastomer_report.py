@@ -20,7 +20,7 @@ from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 
 TIMES = (1e-6, 1e6)
-"""Times in s between which the atrium is asked when its modulus is that of the reading."""
+"""Times in s between which the one is sought at which the modulus of the atrium is that of the reading."""
 
 
 @dataclass(frozen=True)

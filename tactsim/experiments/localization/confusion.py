@@ -199,7 +199,7 @@ class NamedReadings:
 
 @dataclass
 class _Counted:
-    """What the grasps that were estimated until now make."""
+    """What was counted of the grasps estimated so far."""
 
     table: ConfusionTable = field(default_factory=ConfusionTable)
     steps: list[StepRecord] = field(default_factory=list)

@@ -42,7 +42,7 @@ NOISES = ("same", "by_area")
 
 @dataclass
 class _Outcome:
-    """What the matrices that were computed until now find."""
+    """What the matrices computed so far find."""
 
     steps: list[StepRecord] = field(default_factory=list)
     radii: list[dict[str, list[list[float | None]]]] = field(default_factory=list)

@@ -36,7 +36,8 @@ def unit_templates(response: LumpResponse, every: int) -> Array:
 
 
 def false_alarm_threshold(templates: Array, rate: float, *, draws: int, seed: int) -> float:
-    """What the largest ``|z|`` of the templates (n, taxels) exceeds in a share ``rate`` of seeded draws of errors alone.
+    """Threshold that the largest ``|z|`` of the templates (n, taxels) exceeds in a share ``rate`` of seeded draws of errors
+    alone.
 
     Raises
     ------

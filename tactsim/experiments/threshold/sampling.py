@@ -141,7 +141,7 @@ class ApproachSampling:
     def ideal_error(self, low_pass: LowPass | None, level: float, *, films: bool = True) -> float | None:
         """Error in N in continuous time, without noise and rounding; None if nothing is reported.
 
-        With or without filter; without ``films`` both sensors conduct what their lines say.
+        Without ``low_pass`` nothing is filtered; without ``films`` both sensors conduct what their calibration lines say.
 
         Raises
         ------

@@ -112,7 +112,7 @@ def ratio_effect(
     Parameters
     ----------
     force, over : forces
-    ratios : inner over outer radius, twice
+    ratios : the two ratios of inner over outer radius
     time : time since the force began
     """
 

@@ -127,7 +127,7 @@ def atrial_oscillation(
 
 @quantity(unit="1")
 def atrial_time_group(size: Annotated[int, Field(ge=2, le=8)] | None = None, spread: Positive[float] = 0.0261) -> float:
-    """Smallest spread, largest over smallest - 1, of any so many of the eight printed times; or how many lie within a spread.
+    """Smallest spread, largest over smallest less 1, of any ``size`` of the eight printed times; or how many lie within a spread.
 
     Parameters
     ----------

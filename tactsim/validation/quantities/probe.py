@@ -24,7 +24,7 @@ DIMENSION_UNITS = {"switches": "1", "left": "1", "right": "1", "pitch": "m", "tr
 LEAN_HEIGHT = 3e-3
 """Height in m above the face at which the lean of a side is measured."""
 STIFFNESS = 200.0
-"""In N/m, of the tissue under the probe; a switch carries as much over what is below it. Only when they begin counts."""
+"""Stiffness in N/m of the tissue under the probe and under a switch. Its size is of no account: only when the forces begin is."""
 
 
 @quantity(unit=lambda dimension: DIMENSION_UNITS[dimension])
