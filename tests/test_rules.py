@@ -241,6 +241,42 @@ def classes_silent_about_errors() -> list[str]:
     ]
 
 
+def helpers_errors_left_unsaid() -> list[str]:
+    """Public functions that do not say what they raise although a private helper of their module raises it in them."""
+    helpers: dict[str, list[Function]] = {}
+    for f in functions():
+        if f.node.name.startswith("_") and not f.nested and errors_raised(f.node) and not yields(f.node):
+            helpers.setdefault(f.place.partition(":")[0], []).append(f.node)
+    return [
+        f"{f.place}: {helper.name}"
+        for f in functions(public=True)
+        if not re.search(r"\b[Rr]aises\b", ast.get_docstring(f.node) or "")
+        for helper in helpers.get(f.place.partition(":")[0], ())
+        if helper.name in private_calls(f.node) and not errors_raised(helper) & words_of(f)
+    ]
+
+
+def yields(function: Function) -> bool:
+    """Whether a call of it only makes a generator."""
+    return any(isinstance(node, (ast.Yield, ast.YieldFrom)) for node in own_nodes(function))
+
+
+def private_calls(function: Function) -> set[str]:
+    """Names of private functions, and of private methods of the same object, that a function calls where it catches nothing."""
+    caught = {
+        id(inner) for node in own_nodes(function) if isinstance(node, ast.Try) for part in node.body for inner in ast.walk(part)
+    }
+    calls = (node.func for node in own_nodes(function) if isinstance(node, ast.Call) and id(node) not in caught)
+    return {
+        name for call in calls for name in [call.id if isinstance(call, ast.Name) else own_method(call)] if name.startswith("_")
+    }
+
+
+def own_method(call: ast.expr) -> str:
+    own = isinstance(call, ast.Attribute) and isinstance(call.value, ast.Name) and call.value.id in ("self", "cls")
+    return call.attr if own else ""
+
+
 def words_of(definition: Definition) -> set[str]:
     return set(re.findall(r"\w+", ast.get_docstring(definition.node) or ""))
 
@@ -359,6 +395,7 @@ RULES: list[Callable[[], list[str]]] = [
     undocumented,
     silent_about_errors,
     classes_silent_about_errors,
+    helpers_errors_left_unsaid,
     time_limits_left_unsaid,
     errors_left_unsaid,
     shapes_left_unsaid,
@@ -386,6 +423,7 @@ BROKEN = {
     undocumented: '"""A module."""\ndef f(): ...',
     silent_about_errors: 'def f():\n    """F."""\n    raise ValueError',
     classes_silent_about_errors: 'class A:\n    """A."""\n    def __post_init__(self):\n        raise InvalidQuantity',
+    helpers_errors_left_unsaid: 'def f():\n    """F."""\n    _g()\ndef _g():\n    raise CaseError',
     time_limits_left_unsaid: 'def f():\n    """F."""\n    check_time()',
     errors_left_unsaid: 'def f():\n    """F.\n\n    Raises\n    ------\n    CaseError\n    """\n    raise StorageError',
     shapes_left_unsaid: 'def f(a: Array | None) -> None:\n    """A of b."""',

@@ -20,7 +20,9 @@ from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.networks import OUTPUTS, LearnedWeights, Network, inputs
 
 HIDDEN = (64, 64)
+"""Neurons in each hidden layer of a network."""
 NETWORKS = 4
+"""Networks of the ensemble for the place."""
 PASSES = 40
 """Passes over the examples; their number does not depend on the loss."""
 FAST = 8000

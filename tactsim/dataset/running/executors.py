@@ -111,7 +111,13 @@ class LocalWorkers(Executor):
         self._pool.submit(samples, json.dumps({"sweep": self._text, "folder": self._folder, "samples": samples}).encode())
 
     def wait(self, seconds: float) -> list[TaskOutcome]:
-        """What the processes finished, and the tasks of those that died."""
+        """What the processes finished, and the tasks of those that died.
+
+        Raises
+        ------
+        CaseError, TactsimError
+            As ``Executor.wait``.
+        """
         return [_outcome(answer) for answer in self._pool.wait(seconds)]
 
     def close(self) -> None:

@@ -25,6 +25,7 @@ from tactsim.outside.text import one_line
 TASK_SECONDS = 0.5
 """Time in s that a task should take: short samples are handed out many at a time."""
 MOST_IN_TASK = 256
+"""Samples of a task, at most, however short they are."""
 FOLD_SECONDS = 10.0
 FOLD_SAMPLES = 1024
 """The journal is folded into the arrays after so many seconds or samples, whichever is first."""

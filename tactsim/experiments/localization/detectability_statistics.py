@@ -21,6 +21,7 @@ from tactsim.deadline import check_time
 from tactsim.localization.lump_response import LumpResponse
 
 BLOCK_OF_DRAWS = 250
+"""Draws that are matched together, which bounds the memory."""
 FEWEST = 1e-4
 """Least radius in m that is sought: a tenth of a millimetre."""
 CLOSE = 1e-7

@@ -30,6 +30,7 @@ FORMULA_LABELS = {
     "smythe": "Smythe 1951",
 }
 RATIOS_DRAWN, POINTS_DRAWN = 400, 200
+"""Points of a curve over the ratio of the radii, and of one over time or force."""
 
 
 @quantity(unit="1")

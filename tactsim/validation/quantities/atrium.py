@@ -23,6 +23,7 @@ FREQUENCIES = np.arange(1.0, 37.0, 5.0)
 """Tested frequencies in Hz, thesis section 4.4."""
 TIMES_LABELS = {"retardation_times": "times in s (as printed)", "viscosities": "viscosities in MPa s (as in 4.6.4)"}
 POINTS = 200
+"""Points of a drawn curve."""
 
 
 def numbered_units(times: str) -> tuple[Array, Array]:

@@ -30,6 +30,7 @@ RATE_DIGIT = 0.01
 """Last printed digit of a rate in 1/s."""
 TRANSFORM_UNITS = {"static": "N", "numerator": "N/s", "delay": "s", "constant": "1/s^2", "largest": "N"}
 POINTS = 601
+"""Points of a drawn curve."""
 
 
 def units_by_speed(chosen: str) -> GeneralizedKelvin:

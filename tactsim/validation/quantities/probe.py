@@ -139,6 +139,7 @@ Rates = Annotated[tuple[Positive[Speed], ...], Field(min_length=1, description="
 Depths = Annotated[tuple[Positive[Length], ...], Field(min_length=1, description="Depths that are compared.")]
 TissueNumber = Annotated[int, Field(ge=1, description="Number of the tissue in the case, from 1.")]
 EACH_MM = (1e-3, 2e-3, 3e-3, 4e-3, 5e-3)
+"""Depths in m at which forces are compared unless a table says others."""
 
 
 @quantity(unit="1")
