@@ -155,7 +155,13 @@ class Registered:
         return cls.model_validate(value, context=info.context)
 
     def class_of(self, kind: str) -> Any:
-        """The class of a kind, as `kind_class`; a subclass may look elsewhere."""
+        """The class of a kind, as `kind_class`; a subclass may look elsewhere.
+
+        Raises
+        ------
+        AmbiguousKind, UnknownName, IncompleteKind
+            As `kind_class`.
+        """
         return kind_class(self.base, kind)
 
     def _class(self, kind: Any) -> Any:

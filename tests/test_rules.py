@@ -224,6 +224,73 @@ def silent_about_errors() -> list[str]:
     return [f.place for f in functions(public=True) if not says_raises(f) and raises(f.node)]
 
 
+def classes_silent_about_errors() -> list[str]:
+    """Public classes that raise as they are made and whose docstring does not name the error, nor a base class of it."""
+    made = [
+        (c, part)
+        for c in definitions()
+        if isinstance(c.node, ast.ClassDef) and c.public
+        for part in c.node.body
+        if isinstance(part, FUNCTIONS) and part.name in ("__init__", "__post_init__")
+    ]
+    return [
+        f"{c.place}: {name}"
+        for c, part in made
+        for name in sorted(errors_raised(part))
+        if not {base.__name__ for base in getattr(errors, name).__mro__[:-1]} & words_of(c)
+    ]
+
+
+def helpers_errors_left_unsaid() -> list[str]:
+    """Public functions that do not say what they raise although a private helper of their module raises it in them."""
+    helpers: dict[str, list[Function]] = {}
+    for f in functions():
+        if f.node.name.startswith("_") and not f.nested and errors_raised(f.node) and not yields(f.node):
+            helpers.setdefault(f.place.partition(":")[0], []).append(f.node)
+    return [
+        f"{f.place}: {helper.name}"
+        for f in functions(public=True)
+        if not re.search(r"\b[Rr]aises\b", ast.get_docstring(f.node) or "")
+        for helper in helpers.get(f.place.partition(":")[0], ())
+        if helper.name in private_calls(f.node) and not errors_raised(helper) & words_of(f)
+    ]
+
+
+def yields(function: Function) -> bool:
+    """Whether a call of it only makes a generator."""
+    return any(isinstance(node, (ast.Yield, ast.YieldFrom)) for node in own_nodes(function))
+
+
+def private_calls(function: Function) -> set[str]:
+    """Names of private functions, and of private methods of the same object, that a function calls where it catches nothing."""
+    caught = {
+        id(inner) for node in own_nodes(function) if isinstance(node, ast.Try) for part in node.body for inner in ast.walk(part)
+    }
+    calls = (node.func for node in own_nodes(function) if isinstance(node, ast.Call) and id(node) not in caught)
+    return {
+        name for call in calls for name in [call.id if isinstance(call, ast.Name) else own_method(call)] if name.startswith("_")
+    }
+
+
+def own_method(call: ast.expr) -> str:
+    own = isinstance(call, ast.Attribute) and isinstance(call.value, ast.Name) and call.value.id in ("self", "cls")
+    return call.attr if own else ""
+
+
+def words_of(definition: Definition) -> set[str]:
+    return set(re.findall(r"\w+", ast.get_docstring(definition.node) or ""))
+
+
+def time_limits_left_unsaid() -> list[str]:
+    """Public functions that look at the time limit and do not say that they end when it has passed."""
+    return [
+        f.place
+        for f in functions(public=True)
+        if any(isinstance(node, ast.Name) and node.id == "check_time" for node in own_nodes(f.node))
+        and not {"OutOfTime", "Unfinished", "TactsimError"} & named_errors(f)
+    ]
+
+
 def errors_left_unsaid() -> list[str]:
     """Errors of this package that a public function raises and that its section neither names nor names a base class of."""
     return [
@@ -327,6 +394,9 @@ RULES: list[Callable[[], list[str]]] = [
     large_classes,
     undocumented,
     silent_about_errors,
+    classes_silent_about_errors,
+    helpers_errors_left_unsaid,
+    time_limits_left_unsaid,
     errors_left_unsaid,
     shapes_left_unsaid,
     other_ends_of_runs,
@@ -352,6 +422,9 @@ BROKEN = {
     large_classes: "class A:\n" + "".join(f"    def m{k}(self): ...\n" for k in range(11)),
     undocumented: '"""A module."""\ndef f(): ...',
     silent_about_errors: 'def f():\n    """F."""\n    raise ValueError',
+    classes_silent_about_errors: 'class A:\n    """A."""\n    def __post_init__(self):\n        raise InvalidQuantity',
+    helpers_errors_left_unsaid: 'def f():\n    """F."""\n    _g()\ndef _g():\n    raise CaseError',
+    time_limits_left_unsaid: 'def f():\n    """F."""\n    check_time()',
     errors_left_unsaid: 'def f():\n    """F.\n\n    Raises\n    ------\n    CaseError\n    """\n    raise StorageError',
     shapes_left_unsaid: 'def f(a: Array | None) -> None:\n    """A of b."""',
     other_ends_of_runs: "try:\n    a = 1\nexcept (ValueError, KeyboardInterrupt):\n    pass",

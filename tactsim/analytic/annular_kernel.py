@@ -27,6 +27,9 @@ class LogarithmicRing:
     .. math:: \ln r = \lambda (y - 1), \quad \lambda = -\tfrac12 \ln b, \quad y \in [-1, 1]
 
     A pressure :math:`p(r)\, r\, \lambda = \phi(y) / \sqrt{1 - y^2}` is given by ``density``, the values of phi at ``nodes``.
+
+    Source: Mason & Handscomb 2003, Chebyshev Polynomials, chapter 9: density and points for an integral equation with a
+    logarithm.
     """
 
     hole: float
@@ -95,6 +98,9 @@ class LogarithmicRing:
         r"""What the base of ``layer`` (lengths over the outer radius) adds to ``half_space_influence``, shape (n, terms).
 
         .. math:: \int_b^1 p(s)\, s \int_0^\infty (M(x) - 1)\, J_0(x r / h)\, J_0(x s / h)\, \frac{dx}{h}\, ds
+
+        Source: the surface displacement of ``Layer``, superposed by the Hankel transform of the pressure, less that of the
+        half-space.
         """
         x, amplitudes = _waves(layer, max(1.0, float(r.max(initial=0))))
         return _modes(layer, r, x) @ (amplitudes[:, None] * _modes(layer, self.radii, x).T) * (self.weight * self.radii)

@@ -42,6 +42,8 @@ class AnnularPunch:
         \frac{1 - \nu}{G} \int_b^a p(s)\, s \int_0^\infty M(k h) J_0(k r) J_0(k s)\, dk\, ds = \epsilon, \quad b < r < a
 
     by collocation at Chebyshev's points in ln r (``LogarithmicRing``).
+
+    Source: the surface displacement of ``Layer``, superposed by the Hankel transform of the pressure.
     """
 
     radius_ratio: float

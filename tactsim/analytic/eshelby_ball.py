@@ -30,6 +30,8 @@ def stiffness_ratio_of(contrast: float) -> float:
 
     The inverse of :func:`eshelby_contrast`: 1 for tissue, 0 for a hole, infinite from c = 5/2 on, where the ball is as good as
     rigid, or too large for a small one.
+
+    Source: J. D. Eshelby 1957, doi:10.1098/rspa.1957.0133, for nu = 1/2, solved for the ratio.
     """
     if contrast >= RIGID_CONTRAST:
         return float("inf")

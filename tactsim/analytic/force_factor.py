@@ -1,6 +1,9 @@
 r"""Force and rise of the rigid flat annulus on an elastic half-space as quick functions of its radius ratio.
 
 .. math:: P = \kappa(b / a)\, \frac{4 G a \epsilon}{1 - \nu}
+
+Source: thesis, eqs. 4.2.21 and 4.6.5, for the form; the factor is computed anew, as the printed one is not that of the annulus
+(errata E6).
 """
 
 from __future__ import annotations

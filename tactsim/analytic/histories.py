@@ -17,7 +17,13 @@ from tactsim.errors import InvalidQuantity, shown
 
 @dataclass(frozen=True)
 class Harmonic:
-    """amplitude * sin(angular_frequency * (t - start) + phase), with the start of its segment; rad/s >= 0 and rad."""
+    """amplitude * sin(angular_frequency * (t - start) + phase), with the start of its segment; rad/s >= 0 and rad.
+
+    Raises
+    ------
+    InvalidQuantity
+        If a number is not finite or the angular frequency is negative.
+    """
 
     amplitude: float
     angular_frequency: float
@@ -67,7 +73,13 @@ class Segment:
         return self.value + self.slope * elapsed + waves
 
     def part(self, start: float, end: float) -> Segment:
-        """The same function on [start, end), both in s."""
+        """The same function on [start, end), both in s.
+
+        Raises
+        ------
+        InvalidQuantity
+            If ``start`` is negative, not finite or not before ``end``.
+        """
         if (start, end) == (self.start, self.end):
             return self
         shift = start - self.start
@@ -190,7 +202,13 @@ def _covering(history: History, times: list[float]) -> list[int]:
 
 
 def step(value: float) -> History:
-    """The history that jumps to ``value`` at t = 0."""
+    """The history that jumps to ``value`` at t = 0.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the value is not finite.
+    """
     return History((Segment(0.0, math.inf, value),))
 
 

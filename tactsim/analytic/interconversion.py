@@ -102,6 +102,9 @@ class RateSum:
         ``c >= 0`` and ``w_0 >= 0``; a zero weight is no pole.
     weights, times : array
         ``w_j > 0`` and ``T_j > 0`` in s, increasing, shape (n,).
+
+    Source: Gross 1953, Mathematical Structure of the Theories of Viscoelasticity: the roots are the rates of the inverse
+    function.
     """
 
     constant: float

@@ -33,6 +33,8 @@ def response(model: GeneralizedKelvin | GeneralizedMaxwell, history: History, ti
     ------
     InvalidQuantity
         If a time is not finite.
+
+    Source: Tschoegl 1989, The Phenomenological Theory of Linear Viscoelastic Behavior, chapter 3, for the units.
     """
     instants = real_array("times", times)
     if not np.isfinite(instants).all():
@@ -107,6 +109,8 @@ def filtered_input(times: Array, pieces: Pieces, elapsed: Array) -> Array:
         q = v (1 - e^{-h}) + b \tau (h - 1 + e^{-h}) + \sum A (\sin\theta\, c + \cos\theta\, s), \quad h = t / \tau
 
     with value v, slope b, and the responses c and s of ``wave_lags``.
+
+    Source: derived here by variation of constants.
     """
     ratio = elapsed[:, None] / times
     solution = -pieces.values[:, None] * np.expm1(-ratio) + pieces.slopes[:, None] * times * ramp_lag(ratio)
@@ -122,6 +126,8 @@ def filtered_rate(times: Array, pieces: Pieces, elapsed: Array) -> Array:
     .. math:: r = b \tau (1 - e^{-h}) + \sum A \omega \tau (\cos\theta\, c - \sin\theta\, s)
 
     with slope b, and the responses c and s of ``wave_lags``.
+
+    Source: derived here by variation of constants.
     """
     ratio = elapsed[:, None] / times
     solution = -pieces.slopes[:, None] * times * np.expm1(-ratio)
@@ -153,6 +159,8 @@ def wave_lags(ratio: Array, angle: Array, lag: Array) -> tuple[Array, Array]:
 
     For h < 1 the bracket is formed as (h - 1 + exp(-h)) + 2 sin(p/2)^2 - h (1 - sin(p) / p), the parts of which do not cancel.
     ``ratio`` h, ``angle`` p and ``lag`` r are dimensionless arrays that broadcast to the shape of c and s.
+
+    Source: derived here by variation of constants.
     """
     bow = 2 * np.sin(angle / 2) ** 2
     early = ramp_lag(np.minimum(ratio, 1.0)) + bow - np.minimum(ratio, 1.0) * _sine_deficit(angle)

@@ -65,6 +65,8 @@ def kelvin_step(constants: Array, state: Array, time_step: float, stress: float)
     ------
     InvalidQuantity
         If ``time_step`` is negative, infinite or NaN; the state is then as before.
+
+    Source: as of `maxwell_step`, for the equation of a Kelvin unit.
     """
     if not 0.0 <= time_step < math.inf:
         raise InvalidQuantity("time_step is out of range; allowed: finite and >= 0 s")
@@ -97,6 +99,8 @@ def maxwell_step(constants: Array, state: Array, time_step: float, strain: float
     ------
     InvalidQuantity
         If ``time_step`` is negative, infinite or NaN; the state is then as before.
+
+    Source: Taylor, Pister & Goudreau 1970, doi:10.1002/nme.1620020106.
     """
     if not 0.0 <= time_step < math.inf:
         raise InvalidQuantity("time_step is out of range; allowed: finite and >= 0 s")

@@ -203,6 +203,8 @@ def creep_time(kelvin: GeneralizedKelvin, compliance: ArrayLike) -> np.ndarray:
     ------
     InvalidQuantity
         If a compliance is not positive.
+
+    Source: the bounds are derived here.
     """
     wanted = checked("compliance", compliance, "(0, inf] 1/Pa")
     times = np.where(wanted <= kelvin.glassy_compliance, 0.0, np.inf)

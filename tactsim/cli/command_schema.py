@@ -32,7 +32,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
 
 
 def run(arguments: argparse.Namespace) -> int:
-    """Exit code of the whole command."""
+    """Exit code of the whole command.
+
+    Raises
+    ------
+    StorageError
+        If another file than a JSON Schema stands in the place, or it cannot be written.
+    """
     import json
 
     from tactsim.storage.files import replace_file

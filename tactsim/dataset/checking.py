@@ -37,7 +37,7 @@ MIRRORED = 2
 
 @dataclass(frozen=True)
 class Finding:
-    """Its kind, the samples, and in words what it is and what to do."""
+    """A fault of a data set: its kind, the samples that it concerns, and in words what it is and what to do."""
 
     kind: str
     samples: tuple[int, ...]
@@ -109,7 +109,7 @@ def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterat
 
 
 def _wording(store: Store, variables: Iterable[Variable], sweep: Sweep, same_code: bool) -> Iterator[Finding]:
-    """Meanings that are not what this code says, where the store is of this code; names of splits in any case."""
+    """Attributes in words that are not what this code says, where the store is of this code; meanings of numbers in any case."""
     for variable in variables:
         if variable.name not in store.described:
             continue
@@ -194,7 +194,7 @@ def _notes(store: Store, same_code: bool, variables: Iterable[Variable], sweep: 
         if variable.name in store.described:
             for key, words in differences(store.described[variable.name], variable):
                 if key == "long_name":
-                    yield f"the store is of other code, and perhaps therefore {variable.name}: {words}"
+                    yield f"{variable.name}: {words}; perhaps because the store is of other code"
 
 
 @dataclass
@@ -267,7 +267,7 @@ def _look(read: ChunkRead, layout: Layout, faults: Faults, codes: int) -> None:
                 faults.constant.setdefault(variable.name, []).append(number)
         key = sha256(b"".join(np.ascontiguousarray(sample[variable.name]).tobytes() for variable in readings)).hexdigest()
         case = str(sample.get("case_id", number))
-        faults.equal += [number] if faults.seen.setdefault(key, case) != case else []  # of one case `leaks` tells
+        faults.equal += [number] if faults.seen.setdefault(key, case) != case else []  # `leaks` reports those of one case
 
 
 def _may_not_rest(variable: Variable) -> bool:

@@ -80,7 +80,13 @@ def units_of(spectrum: Array, grid: Array) -> tuple[list[float], list[float]]:
 
 
 def relative_noise(data: DmaData) -> Array:
-    """Relative standard deviation of the noise of each number, shape (2, n): as the data give it, else ``estimated_noise``."""
+    """Relative standard deviation of the noise of each number, shape (2, n): as the data give it, else ``estimated_noise``.
+
+    Raises
+    ------
+    ConvergenceError
+        If it is estimated and the active set of the spectrum does not settle.
+    """
     if data.relative_noise is not None:
         return np.maximum(data.relative_noise, ROUND_OFF)
     return estimated_noise(data)
@@ -93,6 +99,11 @@ def estimated_noise(data: DmaData) -> Array:
 
     with the spectrum J fitted to relative errors and a the number of its positive compliances, whose expectation is the number of
     degrees of freedom that a non-negative fit uses.
+
+    Raises
+    ------
+    ConvergenceError
+        If the active set of the spectrum does not settle.
 
     Source: Meyer & Woodroofe 2000, doi:10.1214/aos/1015956708.
     """

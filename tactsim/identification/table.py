@@ -45,7 +45,13 @@ class Table:
 
     @property
     def header(self) -> list[str]:
-        """The cells of the first line."""
+        """The cells of the first line.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the line is no row of a table.
+        """
         number, line = self.lines[0]
         return self.cells(number, line)
 

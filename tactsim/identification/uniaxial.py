@@ -145,6 +145,8 @@ def fit_uniaxial(curve: UniaxialCurve, form: str = "stable", *, relative: bool =
         If the data do not determine the constants, or give a shear modulus that is not positive.
     ConvergenceError
         If no strongly elliptic material was found.
+
+    Source: the stress is that of `uniaxial_nominal_stress`; the weights are a choice of this package.
     """
     if not isinstance(curve, UniaxialCurve):
         raise InputError(

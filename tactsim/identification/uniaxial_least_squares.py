@@ -100,7 +100,13 @@ class LeastSquares:
         return constants
 
     def fitted_basis(self, data: Array) -> Array:
-        """Directions (n, k) of the residuals along which the data y (m,) alone decide: Q but for the conditions that hold z."""
+        """Directions (n, k) of the residuals along which the data y (m,) alone decide: Q but for the conditions that hold z.
+
+        Raises
+        ------
+        ConvergenceError
+            If the search for the nearest does not end.
+        """
         if self.normals is None:
             return self.basis
         pushed = self.projected(data)
@@ -138,6 +144,9 @@ def ellipticity_rows(names: tuple[str, ...]) -> Array:
     .. math:: (\sqrt{d_i} + \sqrt{d_j})^2 + e_k = \min_{t > 0}\, (1 + t)\, d_i + (1 + 1/t)\, d_j + e_k
 
     of which those of ``TANGENTS`` are held.
+
+    Source: the conditions are those of `shear_conditions`; the tangents are derived here, the least at
+    :math:`t = \sqrt{d_j / d_i}`.
     """
     axis = np.geomspace(*SCANNED, STRETCH_STATES)
     first, second = (side.ravel() for side in np.meshgrid(axis, axis))

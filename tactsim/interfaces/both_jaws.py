@@ -56,7 +56,13 @@ def jaws_at_end(result: Result, name: str) -> Array:
 
 
 def saturated_taxels(result: Result) -> Array:
-    """Which readings (time or 1, jaw, row, column) are saturated; a taxel of which no times are known is so all the time."""
+    """Which readings (time or 1, jaw, row, column) are saturated; a taxel of which no times are known is so all the time.
+
+    Raises
+    ------
+    InputError
+        If the result does not hold it as numbers in arrays of one shape.
+    """
     return jaws_over_time(result, SATURATED) > 0
 
 

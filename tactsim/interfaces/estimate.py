@@ -32,15 +32,33 @@ class Region(ABC):
 
     @abstractmethod
     def contains(self, point: Array, probability: float = LEVEL) -> bool:
-        """Whether a point (3,) in m lies in the region of this probability."""
+        """Whether a point (3,) in m lies in the region of this probability.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the region is not known for this probability; known are those between 0 and 1, of a stored region its own alone.
+        """
 
     @abstractmethod
     def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
-        """Width in plan, the diameter of a circle of the same area, and height of the region, both in m."""
+        """Width in plan, the diameter of a circle of the same area, and height of the region, both in m.
+
+        Raises
+        ------
+        InvalidQuantity
+            As ``contains``.
+        """
 
     @abstractmethod
     def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
-        """Outline of the region seen along the axis ``away``: closed lines (n, 2) in m along the other two axes."""
+        """Outline of the region seen along the axis ``away``: closed lines (n, 2) in m along the other two axes.
+
+        Raises
+        ------
+        InvalidQuantity
+            As ``contains``.
+        """
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +74,11 @@ class EstimatedInclusion:
     covariance : (5, 5) of x, y, z, radius and contrast in SI, (4, 4) where there is no contrast; None if not estimated
     region : where its centre lies with a stated probability; None if not estimated
     line : both ends of the centre line of a tube in m; None if it is no tube or they are not estimated
+
+    Raises
+    ------
+    InvalidQuantity
+        If the centre, the radius or the covariance has a wrong shape or is not finite, or the radius is not positive.
     """
 
     kind: str
@@ -95,6 +118,12 @@ class Estimate:
     probability : that anything is there, from 0 to 1; None if the estimator does not say
     classes : probability of each class by its name, adding up to 1; None if the estimator does not distinguish classes
     factor : what plain tissue reads over the reference, by its stiffness and the gain of the sensors; None if not estimated
+
+    Raises
+    ------
+    InvalidQuantity
+        If the probabilities of the classes do not add up to 1, ``present`` and the inclusions disagree, or another number is out
+        of its range.
     """
 
     present: bool

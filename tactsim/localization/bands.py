@@ -90,6 +90,11 @@ def band_weights(elements: int, pixels: int, form: Form = "corrected") -> Array:
     within (the thesis leaves both ends out) and where V_{n+1}, which there is none of, stands for V_n; then eq. .1.3 sets the
     elements that fall on a pixel. Its weights may be negative.
 
+    Raises
+    ------
+    InvalidQuantity
+        If there is no element or no pixel, or a number is not whole.
+
     Source: thesis, eq. .1.3 and .1.4.
     """
     positions = element_positions(elements, pixels)

@@ -159,6 +159,8 @@ def tube_candidates(
     ------
     InputError
         If none fits, or all radii lie beyond those of the table.
+
+    Source: derived here; r' follows from equal second moments across the line, :math:`r'^2 / 5 = r^2 / 4`.
     """
     heights = response.axes[2]
     lines = _lines(size, part_of_usual(size) * spacing)

@@ -34,6 +34,11 @@ class LumpResponse:
     axes : three ascending arrays of centres in m along x, y and z
     radii : (R,) ascending, in m
     values : (R, nx, ny, nz, jaw, row, column) in N
+
+    Raises
+    ------
+    InvalidQuantity
+        If the values do not have that shape or are not finite.
     """
 
     axes: tuple[Array, Array, Array]
@@ -61,6 +66,13 @@ class LumpResponse:
         size : (3,) of the block in m
         radii : (R,) of the balls in m
         spacing : of the centres in m, at most; it divides the block evenly
+
+        Raises
+        ------
+        InvalidQuantity
+            If a response is not finite.
+        OutOfTime
+            If the time limit has passed, or another thread has stopped the computation.
         """
         counts = [max(2, int(np.ceil(side / spacing))) for side in size]
         edges = [np.linspace(0, side, count + 1) for side, count in zip(size, counts, strict=True)]

@@ -70,6 +70,8 @@ def plain_parts(readings: Readings, estimate: Estimate) -> PlainParts | None:
     whose two parts have one and n - 1 degrees of freedom. Each has a limit of its own, for in their sum the n taxels would hide
     a factor; readings of the tissue of the reference bring either above its limit once in a thousand times. A factor f of the
     reference multiplies its errors too: what it leaves has the variance :math:`(1 + f^2) \sigma^2 + f^2 e_b^2 \overline{p^2}`.
+
+    Source: the inverse of S after Sherman & Morrison 1950, doi:10.1214/aoms/1177729893.
     """
     return _beside_inclusions(readings, estimate.inclusions)
 

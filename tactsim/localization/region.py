@@ -150,12 +150,24 @@ class OutlinedRegion(Region):
     outlines: Mapping[str, Sequence[Array]]
 
     def contains(self, point: Array, probability: float = LEVEL) -> bool:
-        """Whether the point (3,) in m lies within the outlines of every view."""
+        """Whether the point (3,) in m lies within the outlines of every view.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the probability is not that of the outlines.
+        """
         self._check(probability)
         return all(_within(np.delete(point, away), self.outlines.get(view, ())) for view, away in AWAY.items())
 
     def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
-        """Diameter in m of the disc as large as the outlines from above, and height in m of those from the front."""
+        """Diameter in m of the disc as large as the outlines from above, and height in m of those from the front.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the probability is not that of the outlines.
+        """
         self._check(probability)
         area = sum(
             abs((line[:-1, 0] * line[1:, 1] - line[:-1, 1] * line[1:, 0]).sum()) / 2
@@ -165,7 +177,13 @@ class OutlinedRegion(Region):
         return 2 * float(np.sqrt(area / np.pi)), float(np.ptp(heights))
 
     def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
-        """The outlines (n, 2) in m as they were kept."""
+        """The outlines (n, 2) in m as they were kept.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the probability is not that of the outlines.
+        """
         self._check(probability)
         view = next(name for name, axis in AWAY.items() if axis == away)
         return [np.asarray(line, dtype=float) for line in self.outlines.get(view, ())]

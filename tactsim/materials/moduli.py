@@ -12,13 +12,19 @@ BulkModulus = Positive[Pressure]
 
 
 def youngs_modulus(shear_modulus: float, bulk_modulus: float | None) -> float:
-    """E = 9KG / (3K + G) in Pa from G and K in Pa, 3G if K is None (incompressible)."""
+    """E = 9KG / (3K + G) in Pa from G and K in Pa, 3G if K is None (incompressible).
+
+    Source: Landau & Lifshitz 1986, Theory of Elasticity, section 5.
+    """
     G, K = shear_modulus, bulk_modulus
     return 3 * G if K is None else 9 * K * G / (3 * K + G)
 
 
 def poisson_ratio(shear_modulus: float, bulk_modulus: float | None) -> float:
-    """nu = (3K - 2G) / (6K + 2G), dimensionless, from G and K in Pa, 1/2 if K is None (incompressible)."""
+    """nu = (3K - 2G) / (6K + 2G), dimensionless, from G and K in Pa, 1/2 if K is None (incompressible).
+
+    Source: Landau & Lifshitz 1986, Theory of Elasticity, section 5.
+    """
     G, K = shear_modulus, bulk_modulus
     return 0.5 if K is None else (3 * K - 2 * G) / (6 * K + 2 * G)
 

@@ -17,6 +17,11 @@ def neo_hookean_of(shear_compliance: GeneralizedKelvin) -> NeoHookean:
 
     The Prony series follows exactly; a neo-Hookean energy is what linear viscoelasticity says at finite strain if nothing else
     is known.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the compliances and times are so many decades apart that a result leaves the range of floats.
     """
     shear = maxwell_of(shear_compliance)
     instantaneous = shear.instantaneous_modulus
@@ -34,5 +39,11 @@ def shear_relaxation(material: Material) -> GeneralizedMaxwell:
 
 
 def shear_compliance(material: Material) -> GeneralizedKelvin:
-    """Small-strain shear creep compliance of a material in 1/Pa."""
+    """Small-strain shear creep compliance of a material in 1/Pa.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the moduli and times are so many decades apart that a result leaves the range of floats.
+    """
     return kelvin_of(shear_relaxation(material))

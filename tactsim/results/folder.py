@@ -59,7 +59,13 @@ class OutputFolder:
 
     @property
     def replaced(self) -> Path:
-        """Where the earlier folder stands for the moment of the exchange, if it is not kept."""
+        """Where the earlier folder stands for the moment of the exchange, if it is not kept.
+
+        Raises
+        ------
+        StorageError
+            If the place has no name, as ``.`` and ``/``.
+        """
         return beside(self.path, "replaced")
 
     def start(self) -> Path:

@@ -51,7 +51,17 @@ def write_result(
 def fill(
     folder: OutputFolder, result: Result, *, case_id: str, provenance: Mapping[str, Any], figures: Mapping[str, bytes]
 ) -> None:
-    """Writes all files of a result where they wait to be published."""
+    """Writes all files of a result where they wait to be published.
+
+    Raises
+    ------
+    StorageError
+        If a file cannot be written, the name of a figure is not plain, or the scene of the result cannot be read.
+    InvalidQuantity
+        If a quantity or the history could not be read again.
+    TypeError
+        If JSON cannot hold a value of the provenance.
+    """
     with naming(folder.path):
         target = folder.start()
         write_fields(result.frames, target)

@@ -23,7 +23,13 @@ CONTENT = "content"
 
 
 def waiting_folder(place: Path) -> Path:
-    """The folder in which the content of a place waits until it is whole."""
+    """The folder in which the content of a place waits until it is whole.
+
+    Raises
+    ------
+    StorageError
+        If the place has no name, as ``.`` and ``/``.
+    """
     return beside(place, "partial")
 
 

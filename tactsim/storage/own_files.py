@@ -215,7 +215,15 @@ class OwnFiles:
             replace_file(self.folder / name, content)
 
     def adopt(self, name: str) -> None:
-        """Lists a file, if it is there, that an earlier version wrote, which kept no list."""
+        """Lists a file, if it is there, that an earlier version wrote, which kept no list.
+
+        Raises
+        ------
+        ForeignFile
+            If the list of files is not of tactsim.
+        StorageError
+            If the file cannot be read, or the list cannot be written.
+        """
         current = self._current(name)
         if current is not None:
             self._list(name, current)

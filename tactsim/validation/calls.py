@@ -25,7 +25,7 @@ NEEDED = "it needs a type, a name other than 'kind', and must be passed by its n
 
 
 class Call(FrozenModel):
-    """A marked function with its arguments; to call it with the inputs computes what it returns."""
+    """A marked function with its arguments; calling it with the inputs computes what the function returns."""
 
     marked: ClassVar[MarkedFunction]
     kind: str
@@ -68,11 +68,17 @@ class AnyCall(Registered):
         self.family = family
 
     def read(self, value: Any, info: ValidationInfo) -> Any:
-        """As `Registered.read`; a call passes as it is."""
+        """As `Registered.read`; what already is a call stays as it is."""
         return value if isinstance(value, Call) else super().read(value, info)
 
     def kinds(self) -> dict[str, Any]:
-        """Name -> calls of the functions whose modules can be loaded."""
+        """Name -> calls of the functions whose modules can be loaded.
+
+        Raises
+        ------
+        InputError
+            If a parameter of a function has no type or cannot be passed by its name.
+        """
         calls = {}
         for name in marked_names(PACKAGE, self.family):
             with suppress(IncompleteInstallation):

@@ -123,7 +123,7 @@ def _filled(outcome: RowOutcome, computed: Mapping[str, RowOutcome]) -> str:
         if match[1] == "ratio":
             return "?" if outcome.ratio is None else f"{outcome.ratio:.{digits}g}"
         other = outcome if match[1] == "computed" else computed.get(match[1])
-        return match[0] if other is None else figure_text(other, digits)  # one that no row has is a fault of the table
+        return match[0] if other is None else figure_text(other, digits)  # loading reports a name that no row has
 
     return FIGURE.sub(figure, outcome.reason) if outcome.held or outcome.computed is not None else outcome.reason
 

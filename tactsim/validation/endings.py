@@ -12,9 +12,9 @@ from tactsim.validation.limits import Bound, Computed, Interval, Judgement, Tole
 
 Origin = Literal["thesis", "erratum", "exact", "published", "other_program", "own"]
 """Where the expected number or the claim comes from: the thesis prints it, the errata derive it, a closed form gives it, another
-author published it, another program computed it, or this program did and the row only watches that it does not move."""
+author published it, another program computed it, or this program did and the row only watches that it does not change."""
 READ_BACK = 1e-6
-"""Relative difference by which an input may come back: the fits behind some of them are conditioned like that."""
+"""Largest relative difference of an input that is read back: some are results of fits, which are known no better."""
 
 
 class Reproduced(FrozenModel):
@@ -24,7 +24,7 @@ class Reproduced(FrozenModel):
     kind: Literal["reproduced"] = "reproduced"
     """Ending."""
     after: str | None = Field(default=None, pattern=r"^E[0-9]+(, E[0-9]+)*$")
-    """Errata without whose correction it does not come out, like E4."""
+    """Errata that must be corrected before the number comes out, such as E4."""
     within: Tolerance
     """How near it must come."""
 
@@ -35,23 +35,23 @@ class Reproduced(FrozenModel):
 
 
 class Regression(FrozenModel):
-    """An own number: it shows that the program moved, never that it is right."""
+    """A number that this program computed: it shows that the program has changed, never that it is right."""
 
     label: ClassVar[str] = "regression"
     kind: Literal["regression"] = "regression"
     """Ending."""
     within: Tolerance
-    """How far it may move."""
+    """How far it may change."""
     why: str = Field(min_length=1)
     """What it watches."""
 
     def judge(self, computed: Computed, expected: float | None, unit: str) -> Judgement:
-        """Whether the number stands where it stood."""
+        """Whether the number is still what it was."""
         return judged(is_within(self.within, computed, expected, unit), "regression")
 
 
 class RegressionBound(Bound):
-    """A bound on an own number."""
+    """A bound on a number that this program computed."""
 
     label: ClassVar[str] = "regression"
     kind: Literal["regression_bound"] = "regression_bound"
@@ -59,7 +59,7 @@ class RegressionBound(Bound):
 
 
 class Outside(FrozenModel):
-    """The expected number does not come out, by a known factor and for a presumed cause."""
+    """The expected number does not come out: it is missed by a known factor, with a presumed cause."""
 
     label: ClassVar[str] = "outside"
     kind: Literal["outside"] = "outside"
@@ -67,14 +67,15 @@ class Outside(FrozenModel):
     by: float = Field(gt=0)
     """Computed over expected; of an interval, its nearer end."""
     within: float = Field(gt=0, lt=1)
-    """Part of the factor by which it may change before the row counts as left."""
+    """Relative change of the factor beyond which the row has left its class."""
     why: str = Field(min_length=1)
     """Presumed cause."""
 
     @model_validator(mode="after")
     def _outside(self) -> Self:
         if abs(self.by - 1) <= self.within * self.by:
-            raise ValueError(f"a factor of {self.by:g} within {self.within:g} of itself is no deviation")
+            words = f"a factor of {self.by:g} that may change by {self.within:g} of itself may be 1"
+            raise ValueError(f"{words}, which is no deviation")
         return self
 
     def judge(self, computed: Computed, expected: float | None, unit: str) -> Judgement:

@@ -108,7 +108,7 @@ class StudyRunner:
         return (self.cache or user_cache("validation")) / f"{case_id}-{code_identity()}-{solver_identity()}.json"
 
     def _stored(self, case_id: str) -> RunOutcome | None:
-        """What the cache holds, None if nothing that can be read."""
+        """The outcome that the cache holds, None if it holds none that can be read."""
         with suppress(StorageError, ValueError):
             return RunOutcome.model_validate_json(opened(self._place(case_id), "result").text())
         return None

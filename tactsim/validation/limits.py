@@ -11,12 +11,12 @@ from tactsim.model import FrozenModel
 from tactsim.units import parse_quantity
 
 ROUND_OFF = 1e-12
-"""Relative difference of the same number by two roundings."""
+"""Largest relative difference between two roundings of the same number."""
 
 
 @dataclass(frozen=True)
 class Interval:
-    """What a quantity returns that computes a range instead of a number; in SI."""
+    """What a quantity returns that computes a range instead of a number, in SI; a ValueError if ``low`` is above ``high``."""
 
     low: float
     high: float

@@ -30,7 +30,7 @@ class LoadedTables:
     tables: dict[str, Table]
     manifest: Manifest
     faults: tuple[str, ...]
-    """What is absent or not counted; each lets the validation fail."""
+    """What is absent or not counted; each makes the validation fail."""
 
 
 def load_groups(folders: Sequence[Path], names: Sequence[str] = ()) -> tuple[LoadedTables, ...]:

@@ -33,7 +33,7 @@ MEANINGS = {
     "outside": "it does not come out; by what factor, and the presumed cause",
     "contradicted": "a claim does not hold",
     "transcribed": "an input, or an equation with the same inputs on both sides: it was copied well, and nothing else is shown",
-    "regression": "a number of this program: it shows that the program moved, never that it is right",
+    "regression": "a number of this program: it shows that the program has changed, never that it is right",
     "not testable": "nothing to compare, and why",
     REPEATED: "it follows from another row, which its reason names: held as it ended, and not counted a second time",
     LEFT: "it did not end as recorded: the validation fails",

@@ -64,7 +64,7 @@ class Row(FrozenModel):
         if self.allowed == 0 and isinstance(self.ends, Reproduced | Regression) and self.ends.within.relative:
             raise ValueError("a relative tolerance of zero is none; give an absolute one")
         if (self.origin == "own") != isinstance(self.ends, Regression | RegressionBound):
-            raise ValueError("an own number is a regression, and a regression has no other origin")
+            raise ValueError("a number of this program (from: own) ends as a regression, and a regression has no other origin")
         return self
 
     @property

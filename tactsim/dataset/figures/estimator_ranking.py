@@ -109,8 +109,8 @@ def roc_figure(estimators: Sequence[Mapping[str, Any]]) -> Figure:
 
 
 def roc(probability: Array, present: Array) -> tuple[Array, Array]:
-    """False-alarm and detection rate, each (n,) from 0 to 1, if all count as lumps whose probability (samples,) is at
-    least each that occurs; equal ones are taken together.
+    """False-alarm and detection rate, each (n,) from 0 to 1, with every probability (samples,) that occurs as the threshold from
+    which on a sample counts as a lump; equal ones are taken together.
 
     Source: T. Fawcett 2006, doi:10.1016/j.patrec.2005.10.010, algorithm 1.
     """

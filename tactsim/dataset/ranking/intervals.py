@@ -58,9 +58,9 @@ def _resampled(groups: Sequence[Array], statistic: Statistic) -> Array:
 def share(given: Iterable[Given]) -> dict[str, float] | None:
     """Part of the true ones with its 95 % interval; None without values.
 
-    Wilson's interval (1927, doi:10.1080/01621459.1927.10502953), which has a width at 0 and 1 too, of as many independent samples
-    as know as much (Rao and Scott 1992, doi:10.2307/2532311): the fewer, the more alike those of one specimen are. Where all are
-    true or none is, nothing shows how alike, and every specimen counts as one.
+    Wilson's interval (1927, doi:10.1080/01621459.1927.10502953), which has a width at 0 and 1 too, for the number of independent
+    samples that would tell as much (Rao and Scott 1992, doi:10.2307/2532311), which is the smaller, the more alike the samples of
+    one specimen are. Where all are true or none is, nothing shows how alike they are, and every specimen counts as one.
     """
     groups = _by_specimen(given)
     if not groups:
@@ -71,7 +71,7 @@ def share(given: Iterable[Given]) -> dict[str, float] | None:
 
 
 def _independent(groups: Sequence[Array], part: float) -> float:
-    """Number of independent samples that know the part of the true ones as well as the specimens do, at most all."""
+    """Number of independent samples that would tell the part of the true ones as well as the specimens do, at most all."""
     counts = np.array([len(group) for group in groups])
     total, number = counts.sum(), len(groups)
     if number in (1, total) or not 0 < part < 1:

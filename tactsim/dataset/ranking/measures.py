@@ -129,8 +129,8 @@ def _size_of(one: JudgedEstimate, name: str) -> float | None:
 def penalty(one: JudgedEstimate, block_size: Array) -> float:
     """Distance in m of the estimated from the true centre, at most half the block's plan and height together.
 
-    That much is also counted for a lump that is missed and for an alarm without a lump, so that hiding does not pay; nothing is
-    counted for rightly finding nothing. ``block_size`` (3,) is in m.
+    That much is also counted for a lump that is missed and for an alarm without a lump, so that it does not pay to report
+    nothing; nothing is counted for rightly finding nothing. ``block_size`` (3,) is in m.
     """
     most = float(np.hypot(np.min(block_size[:2]) / 2, block_size[2] / 2))
     if one.lateral is not None and one.depth is not None:

@@ -20,7 +20,7 @@ REPEATED = 16
 
 @dataclass(frozen=True)
 class Sensing:
-    """The sensors of one sample, taxels of ``area`` in m^2, and the even ``steps`` of its ramp of ``duration`` in s."""
+    """The sensors of one sample, taxels of ``area`` in m^2, and the equal ``steps`` of its ramp of ``duration`` in s."""
 
     readout: MatrixReadout
     area: float

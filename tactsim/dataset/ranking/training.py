@@ -20,9 +20,11 @@ from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.networks import OUTPUTS, LearnedWeights, Network, inputs
 
 HIDDEN = (64, 64)
+"""Neurons in each hidden layer of a network."""
 NETWORKS = 4
+"""Networks of the ensemble for the place."""
 PASSES = 40
-"""Passes over the examples, as many whatever the loss does."""
+"""Passes over the examples; their number does not depend on the loss."""
 FAST = 8000
 """Grasps of the fast forward model; one in four without a lump."""
 COPIES = 4
@@ -42,7 +44,7 @@ FLOOR = 1e-6
 @dataclass(frozen=True, eq=False)
 class Examples:
     """Changes and references (n, jaw, row, column) in N, targets (n, 4) in m, NaN where there is no lump, and the noise (n,) in N
-    of a reading: the stated one, and what of it the changes have."""
+    of a reading: the stated one, and the part of it that the changes contain already."""
 
     changes: Array
     references: Array

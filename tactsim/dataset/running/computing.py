@@ -23,6 +23,7 @@ from tactsim.outside.text import one_line
 from tactsim.results.result import Status
 
 LONGEST_REASON, LONGEST_WARNINGS = 500, 2000
+"""Characters at which the stored reason of a sample, and its stored warnings, are cut."""
 
 
 def computed(text: str, samples: Sequence[int], lost: str = "", *, folder: str | None = None) -> bytes:

@@ -24,7 +24,7 @@ ADDRESS = re.compile(r"([a-z]+://)?([^\s/:]+|\[[0-9a-fA-F:]+\]):\d{1,5}")
 CONNECTING = 30.0
 """Seconds to wait for the scheduler."""
 WORTH_A_PROCESS = 8.0
-"""Time in s that a short sweep must take for another process to pay, which takes 3 to 5 s to begin, and from the first's core."""
+"""Time in s that a short sweep must take before another process pays: it takes 3 to 5 s to begin, on the core of the first."""
 SHORT = 8
 """Samples for each process below which a sweep is short."""
 TASKS_PER_THREAD = 2
@@ -111,7 +111,13 @@ class LocalWorkers(Executor):
         self._pool.submit(samples, json.dumps({"sweep": self._text, "folder": self._folder, "samples": samples}).encode())
 
     def wait(self, seconds: float) -> list[TaskOutcome]:
-        """What the processes finished, and the tasks of those that died."""
+        """What the processes finished, and the tasks of those that died.
+
+        Raises
+        ------
+        CaseError, TactsimError
+            As ``Executor.wait``.
+        """
         return [_outcome(answer) for answer in self._pool.wait(seconds)]
 
     def close(self) -> None:
@@ -141,7 +147,15 @@ def _outcome(answer: Answer[tuple[int, ...]]) -> TaskOutcome:
 
 
 class Cluster(Executor):
-    """A client of a Dask scheduler; losing it ends the sweep, losing a worker does not."""
+    """A client of a Dask scheduler; losing it ends the sweep, losing a worker does not.
+
+    Raises
+    ------
+    InputError
+        If Dask is not installed, or ``address`` is not of the form HOST:PORT.
+    StorageError
+        If no scheduler answers at the address.
+    """
 
     def __init__(self, text: str, address: str, *, folder: str | None = None):
         try:
@@ -169,7 +183,15 @@ class Cluster(Executor):
         self._tasks[self._client.submit(computed, self._text, samples, folder=self._folder, pure=False)] = samples
 
     def wait(self, seconds: float) -> list[TaskOutcome]:
-        """What the cluster finished, and the tasks that it gave up."""
+        """What the cluster finished, and the tasks that it gave up.
+
+        Raises
+        ------
+        CaseError
+            If the sweep itself is at fault.
+        StorageError
+            If the cluster cannot compute a task.
+        """
         import distributed
 
         if not self._tasks:
@@ -183,7 +205,7 @@ class Cluster(Executor):
         return [self._outcome(future, self._tasks.pop(future)) for future in done]
 
     def close(self) -> None:
-        """Leaves the cluster; once is enough."""
+        """Leaves the cluster; a second call does nothing."""
         if self._client.status == "closed":
             return
         self._client.cancel(list(self._tasks))

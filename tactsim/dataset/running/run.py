@@ -23,13 +23,14 @@ from tactsim.errors import StorageError, TactsimError
 from tactsim.outside.text import one_line
 
 TASK_SECONDS = 0.5
-"""What a task should take: short samples are handed out many at a time."""
+"""Time in s that a task should take: short samples are handed out many at a time."""
 MOST_IN_TASK = 256
+"""Samples of a task, at most, however short they are."""
 FOLD_SECONDS = 10.0
 FOLD_SAMPLES = 1024
 """The journal is folded into the arrays after so many seconds or samples, whichever is first."""
 LOSSES_IN_A_ROW = 30
-"""Lost tasks without any that came back after which the workers themselves must be at fault."""
+"""Lost tasks in a row, none coming back between them, after which the workers themselves must be at fault."""
 SLOWEST, WORTH_A_LINE = 3, 1.0
 """How many of the slowest samples are named, and the time in s that one of them must have taken."""
 MOST_KINDS = 20

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     import xarray
 
 COUNTED = ("weights", "integer", "range")
-"""What a distribution has that is no value of the place, or not alone."""
+"""Keys of a distribution whose numbers are not, or not all, values of the place."""
 
 
 def sweep(
@@ -106,7 +106,7 @@ def sweep(
 
 @contextmanager
 def _resumable(out: str | Path) -> Iterator[None]:
-    """A block whose interruption, such as a second one while the first is heeded, says how to go on."""
+    """A block whose interruption, such as a second one while the first is being handled, says how to go on."""
     try:
         yield
     except KeyboardInterrupt:

@@ -23,6 +23,7 @@ from tactsim.experiments.recording import seed_place
 from tactsim.interfaces.seeds import SEED, entries, seeds_in
 
 SAME_REFUSALS = 4
+"""Draws of the first specimen that are refused with the same words if the file is at fault."""
 CHANNELS = "scatter"
 """Name of fields that say how the channels of a sensor differ; their seed is that of the sensor, not of its noise."""
 SPECIMENS, SAMPLES, NOISE = 0, 1, 2

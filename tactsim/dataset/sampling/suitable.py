@@ -22,13 +22,13 @@ ENDS = (0.0, 1.0 - 2.0**-53)
 MOST_TRIED = 100
 """Cases that are tried: options of long lists within others are left to the drawing."""
 WHOLE = "a whole number"
-"""What `refusals` call a place that takes no fractions."""
+"""What `refusals` calls the value of a place that takes no fractions."""
 
 DEPENDENT = {
     *("greater_than", "greater_than_equal", "less_than", "less_than_equal", "multiple_of", "too_short", "too_long"),
     *("string_too_short", "string_too_long", "extra_forbidden", "missing", "assertion_error"),
 }
-"""Refusals by pydantic of what other draws may meet: bounds, and keys that belong to another kind."""
+"""Refusals by pydantic that need not befall other draws: of bounds, and of keys that belong to another kind."""
 
 Entry = tuple[Any, float]
 BOUNDS = {"greater_than": "gt", "greater_than_equal": "ge", "less_than": "lt", "less_than_equal": "le"}
@@ -59,7 +59,7 @@ def check_suitable(sweep: Sweep) -> None:
     try:
         model = case_class(experiment_class(sweep.kind))
     except UnknownName:
-        return  # the drawing says so
+        return  # drawing the samples reports it
     context = {"units": "required", "folder": sweep.document.folder}
     entries = {place.path: _tried(place) for place in sweep.places}
     before = {path: _cases_before(path, entries) for path in entries}
@@ -115,7 +115,9 @@ def _bounds_beyond(error: ValidationError, value: Any, path: Path) -> frozenset[
 
 
 def _tried(place: Place) -> list[Entry]:
-    """Entries that stand for all: both ends; of options all, of those that are numbers the ends and a fraction."""
+    """Entries that are tried for all: both ends; of options all, but of numbers the least, the largest and one that is not
+    whole.
+    """
     listed = place.distribution
     if not isinstance(listed, Listed):
         return [listed.value(share) for share in ENDS]
@@ -128,7 +130,7 @@ def _tried(place: Place) -> list[Entry]:
 
 
 def _cases_before(path: Path, entries: dict[Path, list[Entry]]) -> int:
-    """In how many cases every option is once drawn of the choices within which a place stands."""
+    """Number of cases in which each option of the choices around a place is drawn once."""
     cases = 1
     for length in range(len(path)):
         cases *= len(entries.get(path[:length], [None]))

@@ -43,7 +43,7 @@ class Sweep:
     sample_places: tuple[Place, ...]
     """Drawn for each sample of a specimen."""
     checked: bool = False
-    """Whether its distributions were held against their places before, as those of a text are that `Sweep.text` wrote."""
+    """Whether its distributions were checked against their places before, as were those of a text that `Sweep.text` wrote."""
 
     @property
     def places(self) -> tuple[Place, ...]:
@@ -86,7 +86,7 @@ class Sweep:
 
     @property
     def extendable(self) -> bool:
-        """Whether more samples leave those before as they are."""
+        """Whether adding samples leaves the earlier ones unchanged."""
         return self.settings.design in ("sobol", "random")
 
 

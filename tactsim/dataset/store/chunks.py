@@ -68,11 +68,11 @@ def _check_texts(content: bytes, samples: int) -> None:
     place = 4
     for _ in range(samples):
         if place + 4 > len(content):
-            raise ValueError("a text ends behind its end")
+            raise ValueError("a text begins beyond its end")
         begin, place = place + 4, place + 4 + struct.unpack_from("<I", content, place)[0]
         try:
             content[begin:place].decode("utf-8")
         except UnicodeDecodeError:
             raise ValueError("a text is not UTF-8") from None
     if place != len(content):
-        raise ValueError("a text ends behind its end")
+        raise ValueError("its texts do not end where it ends")

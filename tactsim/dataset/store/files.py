@@ -149,11 +149,23 @@ class GuardedFiles(LocalStore):
         return type(self)(self.root, self.described, read_only=read_only)
 
     async def get(self, key: str, prototype: Any = None, byte_range: Any = None) -> Any:
-        """The content of a file, None if there is none."""
+        """The content of a file, None if there is none.
+
+        Raises
+        ------
+        StorageError
+            As ``content``, or if a part of a chunk is asked for.
+        """
         return self._buffer(await asyncio.to_thread(self.content, key), prototype, byte_range)
 
     def get_sync(self, key: str, *, prototype: Any = None, byte_range: Any = None) -> Any:
-        """The same for callers that wait."""
+        """The same for callers that wait.
+
+        Raises
+        ------
+        StorageError
+            As ``get``.
+        """
         return self._buffer(self.content(key), prototype, byte_range)
 
     async def list_dir(self, prefix: str) -> AsyncIterator[str]:

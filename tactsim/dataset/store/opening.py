@@ -140,13 +140,13 @@ class Store:
 
     @property
     def missing(self) -> list[str]:
-        """Names of arrays that the store had and that are gone."""
+        """Names of arrays that the store had and that are gone; raises as `consolidated_metadata` does."""
         names = self.attributes.get(ARRAYS, sorted(consolidated_metadata(self.path)))
         return [name for name in names if name not in self.described]
 
     @property
     def ungathered(self) -> list[str]:
-        """Names of arrays that the store's zarr.json, which xarray reads, describes otherwise than their own."""
+        """Names of arrays that zarr.json, which xarray reads, describes otherwise than their own; raises as `missing` does."""
         gathered = consolidated_metadata(self.path)
         return [name for name, array in self.described.items() if gathered.get(name) != array.metadata]
 

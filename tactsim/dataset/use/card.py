@@ -31,7 +31,7 @@ from tactsim.outside.text import aligned, markdown_table, one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
 TAGS = "tags: [tactile, simulation, tactsim]"
-"""A line of the head by which a card is known that was written before tactsim listed its files."""
+"""Line in the head of a card by which one is recognised that was written before tactsim listed its files."""
 SPECIAL = str.maketrans({character: f"\\{character}" for character in "\\`<[]"} | {"|": "/"})
 """Characters that begin code, tags and links, escaped; a bar would end the cell of a table."""
 GENERAL_LIMITS = (
@@ -40,7 +40,7 @@ GENERAL_LIMITS = (
     "Numbers repeat on one machine and with the same versions; across machines expect differences of about 1e-8.",
 )
 MOST_OPTIONS = 10
-"""Options that no sample has, of which a sentence tells."""
+"""Most options without a sample that the card names."""
 LIKELY = 0.99
 """Probability with which enough specimens put one into every split."""
 

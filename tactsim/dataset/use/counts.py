@@ -58,7 +58,7 @@ def empty_splits(counts: Mapping[str, int], splits: Splits) -> list[str]:
 def split_shares(splits: Splits) -> dict[str, float]:
     """Share of the specimens of every part that has one."""
     shares = {"train": splits.train, "validation": splits.validation, "test": 1 - splits.train - splits.validation}
-    return {name: share for name, share in shares.items() if share > 1e-9}  # round-off of the rest
+    return {name: share for name, share in shares.items() if share > 1e-9}  # the rest may be round-off
 
 
 def redrawn(store: Store) -> tuple[int, int]:
@@ -66,7 +66,7 @@ def redrawn(store: Store) -> tuple[int, int]:
     computed = store.read("status") != PENDING
     _, first = np.unique(store.read("specimen")[computed], return_index=True)
     draws = store.read("redraws")[computed][first].astype(int)
-    refused = draws + (store.read("case_id")[computed][first] == "")  # of a specimen without a case the last one too
+    refused = draws + (store.read("case_id")[computed][first] == "")  # without a case the last draw, too
     return int((refused > 0).sum()), int(refused.sum())
 
 

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     import xarray
 
 SHARD_SAMPLES = 1000
+"""Samples in a shard."""
 INDEX = "index.parquet"
 META = "dataset.json"
 MODULE = "tactsim.dataset.use.export"

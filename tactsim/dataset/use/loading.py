@@ -193,6 +193,15 @@ class TorchSamples:
 
     The store is opened in each process when its first sample is taken, so that any number of loader workers share nothing.
     Whole numbers stay whole. NaN of padded inclusions stays NaN.
+
+    Raises
+    ------
+    UnknownName
+        If there is no such variable or split.
+    InputError
+        If a variable holds text, the list of splits is empty, or a name is not text.
+    StorageError
+        If the store cannot be opened.
     """
 
     def __init__(

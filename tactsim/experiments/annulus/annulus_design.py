@@ -41,8 +41,8 @@ class AnnulusDesign(Experiment):
     .. math:: \epsilon = \frac{P J(t)}{8 a \kappa}, \quad \text{rise} = \rho\, \epsilon \ge L \text{ where the tissue touches}
 
     with force factor kappa and touch factor rho of the exact contact: the largest rise in the hole, which is on the axis but for
-    layers thin beside it. Thesis section 4.7 takes eps itself for the rise. What would press the annulus to the base of a layer
-    has no value.
+    layers thin beside it. Thesis section 4.7 takes eps itself for the rise. Where the annulus would be pressed to the base of a
+    layer there is no value.
     """
 
     kind: Literal["annulus_design"] = "annulus_design"
@@ -103,7 +103,13 @@ class AnnulusDesign(Experiment):
         return cls(ratios=(0.1, 0.5), recesses=(0.1e-3, 0.7e-3), forces=(1.0, 2.0), times=(0.5, 5.0))
 
     def annulus(self, ratio: float) -> ViscoelasticAnnulus:
-        """The contact of an annulus of this radius ratio."""
+        """The contact of an annulus of this radius ratio.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the ratio is out of its range.
+        """
         slenderness = self.outer_radius / self.thickness if self.thickness else 0.0
         return ViscoelasticAnnulus(
             self.outer_radius,

@@ -23,7 +23,7 @@ from tactsim.results.result import rows
 from tactsim.units import Length, NonNegative, Positive, format_quantity
 
 DECADES, PER_DECADE = 6, 10
-"""Sampled times after the beginning of each piece: so many decades before its end, with so many times each."""
+"""Times sampled after the beginning of each piece: over this many decades up to its length, and so many in each."""
 MOST_TIMES = 1_000_000
 """Sampled times of all pieces: each takes 1 kB, and all are rows of the history."""
 

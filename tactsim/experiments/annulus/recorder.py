@@ -43,7 +43,7 @@ class ClosedFormRecorder(Recorder):
         return [label(name, unit, words) for name, (unit, words) in variables.items()]
 
     def labels(self, experiment: ClosedForm) -> Values:
-        """Values of the same."""
+        """Values of these labels."""
         relaxation = shear_relaxation(experiment.material)
         values = (
             experiment.inner_radius,

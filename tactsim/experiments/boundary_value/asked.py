@@ -142,7 +142,7 @@ class AskedContactForce(Asked):
 
 
 class AskedEnergy(Asked):
-    """Energy of the part that is computed as it would remain stored after any relaxation: without what fades.
+    """Energy that the part computed would still store after full relaxation: without what fades.
 
     The energy of the volume change is that of the pressure, p^2 / (2 K), as the mixed form has it.
     """

@@ -59,7 +59,7 @@ class FaceCondition(Condition):
 
 
 class Components(FrozenModel):
-    """Components of a vector; those that are not given are left free, or are zero of a traction or a force."""
+    """Components of a vector; those that are not given are left free; those of a traction or a force are zero."""
 
     def along(self, axes: tuple[str, ...]) -> dict[int, float]:
         """Number of the axis -> component in SI, of those that are given.
@@ -67,7 +67,7 @@ class Components(FrozenModel):
         Raises
         ------
         ValueError
-            If one is given that the problem has not, or none.
+            If a component is given that the problem does not have, or none is given.
         """
         given = {name: getattr(self, name) for name in ("x", "y", "z", "r") if getattr(self, name) is not None}
         if unknown := [name for name in given if name not in axes]:

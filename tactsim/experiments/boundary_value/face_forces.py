@@ -44,7 +44,9 @@ class FaceForces:
         }
 
     def of_edges(self, state: TimedState) -> dict[str, Array]:
-        """What of ``at`` (n, d) in N is an equal part of a reaction that several faces take: the truth is anything up to all."""
+        """The part of ``at`` (n, d) in N that is an equal share of a reaction of several faces: the true share is anything up
+        to all.
+        """
         if not any(part.any() for part in self._part_of_edges.values()):
             return {}
         _, reaction = self._acting(state)

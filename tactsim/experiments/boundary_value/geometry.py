@@ -45,7 +45,7 @@ Spans = Annotated[tuple[Span, ...], Field(min_length=1)]
 
 
 def line_of(spans: tuple[Span, ...], start: float = 0.0) -> Array:
-    """Coordinates (n,) in m of the ends of all cells, from ``start`` in m on."""
+    """Coordinates (n,) in m of the ends of all cells, from ``start`` in m on; an InputError if the cells are too many."""
     lines = [np.array([start])]
     for span in spans:
         lines.append(lines[-1][-1] + spaced(span.length, span.cells, span.ratio)[1:])

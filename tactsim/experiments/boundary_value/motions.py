@@ -37,7 +37,7 @@ def motions_of(parts: Parts, conditions: Sequence[AnyCondition]) -> list[Held]:
     Raises
     ------
     ValueError
-        If a condition names what the body has not; the message begins with its key.
+        If a condition names what the body does not have; the message begins with its key.
     """
     mesh, held = parts.domain.mesh, []
     for name, axis in parts.domain.mirrors.items():

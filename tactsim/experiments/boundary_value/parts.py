@@ -118,7 +118,7 @@ class Parts:
         return facets[inside]
 
     def _ending(self, within: Within) -> str:
-        """What lets cells end at the ends of a region."""
+        """What to do so that cells end at the ends of a region."""
         if "r" in within and self.dimension == "plane_strain" and "inner" not in self.domain.faces:
             return (
                 "cells of a section without a hole end on no circle: take dimension: axisymmetric, or 3d, and hold the "
@@ -175,7 +175,7 @@ class Parts:
         Raises
         ------
         ValueError
-            If it has not, or does not.
+            If it has another number of coordinates, or lies further out.
         """
         if len(place) != len(self.axes):
             raise ValueError(

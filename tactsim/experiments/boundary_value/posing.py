@@ -37,8 +37,8 @@ SWITCH_SHARE = 0.03
 SOFTNESS = 2.5e-3
 """Penetration that the penalty of friction would leave without multipliers, over the body's size: a part of a small cell."""
 WIDEST = 1e-2
-"""Penetration from which on a state is approached if Newton does not find it at once, over the body's size: with it, round bodies
-on coarse cells are found from far away, and a tenth of it changes hardly a point from open to closed."""
+"""Penetration at which a state that Newton does not find at once is approached, over the body's size: with it Newton finds
+round bodies on coarse cells from far away, and from there to a tenth of it hardly a point opens or closes."""
 
 
 Load = PressureCondition | TractionCondition | ForceCondition | BodyForceCondition
@@ -104,7 +104,7 @@ class _Posing:
         return Regularisation(tolerance, modulus, SWITCH_SHARE * self._size, widest=WIDEST * self._size)
 
     def _conforms(self, contact: PosedContact) -> bool:
-        """Whether all points of a face are as far from the rigid body."""
+        """Whether all points of a face are equally far from the rigid body."""
         gap = contact.pair.body.signed_distance(contact.reference - contact.place[:, None])[0]
         return float(np.ptp(gap)) <= AT_NODE * self._size
 

@@ -57,7 +57,7 @@ class Probes:
         return {name: self._problem.asked[name].factor * evaluate(present) for name, evaluate in self._evaluations.items()}
 
     def doubts(self, state: TimedState) -> list[str]:
-        """Forces on faces of which more than is allowed stands at edges that other faces hold, too."""
+        """Warnings of forces on faces more of which than is allowed acts at edges that other faces hold, too."""
         parts = self._forces.of_edges(state)
         forces = self._forces.at(state) if parts else {}
         doubts = []

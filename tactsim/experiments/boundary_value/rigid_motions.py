@@ -19,7 +19,7 @@ def free_motions(parts: Parts, held: Sequence[Held]) -> list[str]:
     names, modes = _rigid_motions(parts)
     fixed = [one.motion.unknowns for one in held]
     unknowns = np.unique(np.concatenate(fixed)).astype(np.int64) if fixed else np.zeros(0, np.int64)
-    sliding = [one.motion.slides(1.0) for one in held]  # where it has turned as far as it will
+    sliding = [one.motion.slides(1.0) for one in held]  # at the end of its turn
     turned = [one.normals[0, :, None] * modes[one.first] + one.normals[1, :, None] * modes[one.first + 1] for one in sliding]
     rows = np.vstack([modes[unknowns], *turned, np.zeros((len(names), len(names)))])  # at least as many rows as motions
     _, resistance, motions = np.linalg.svd(rows, full_matrices=False)

@@ -48,7 +48,7 @@ RECORDED = {
 }
 """Units of what every step records beside what is asked for."""
 MOST_STEPS = 10_000
-"""Of a ramp, and of a period of a sine."""
+"""Most steps of a ramp, and of a period of a sine."""
 PENETRATION_SHARE, WITH_FRICTION = 1e-6, 1e-5
 """Largest penetration over the body's size, if a case gives none: of smooth contacts, and where any has friction."""
 

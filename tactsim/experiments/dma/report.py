@@ -171,7 +171,9 @@ class DmaReport:
         return float(((self._relative_errors(fit) / relative_noise(self.data)) ** 2).sum())
 
     def _misfit(self) -> list[str]:
-        """That the units leave more than the noise, whose sum of squares follows chi-square of as many as all numbers at most."""
+        """A warning if the units leave more than the noise, whose sum of squares follows a chi-square distribution with at
+        most as many degrees of freedom as there are numbers.
+        """
         finding = self.fits.get("least_squares")
         fit = fit_least_squares(self.data, self._units) if finding is None else finding.fit
         squares, most = self._squares(fit), float(scipy.stats.chi2.ppf(1 - BY_CHANCE, self.data.parts.size))

@@ -42,13 +42,21 @@ class SignalsAnalysis:
         ------
         InvalidQuantity
             If a test gives no modulus.
+        ConvergenceError
+            If its frequency is refined and not found.
         """
         ordered = tuple(sorted(signals, key=lambda one: one.frequency))
         return cls(ordered, tuple(complex_modulus(one, refine=refine) for one in ordered))
 
     @property
     def data(self) -> DmaData:
-        """Compliances with their noise."""
+        """Compliances with their noise.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a frequency is repeated.
+        """
         return dma_from_estimates(self.estimates)
 
 
@@ -99,7 +107,13 @@ class SyntheticDma(ModelledDma):
     """Seed of the noise."""
 
     def measured(self) -> DmaData:
-        """The data."""
+        """The data.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the noise is so large that a compliance becomes negative.
+        """
         return synthetic_dma(self.model, self.frequencies, self.noise, self.seed)
 
 
@@ -114,7 +128,15 @@ class MeasuredDma(DmaSource):
     """Relative standard deviation of each number; null estimates it from the residuals of the fit."""
 
     def measured(self) -> DmaData:
-        """The data."""
+        """The data.
+
+        Raises
+        ------
+        StorageError
+            If the file cannot be read.
+        InvalidQuantity
+            If a unit is missing or a number out of its range, with file and row.
+        """
         return read_dma(self.path, self.noise)
 
 
@@ -154,7 +176,13 @@ class SyntheticSignals(ModelledDma):
         return self
 
     def analysis(self) -> SignalsAnalysis:
-        """The signals and what they give."""
+        """The signals and what they give.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the mean load is below the amplitude, or a test gives no modulus.
+        """
         machine = DmaMachine(
             area=self.area,
             height=self.height,
@@ -206,7 +234,17 @@ class SignalsDma(DmaSource):
         return self
 
     def analysis(self) -> SignalsAnalysis:
-        """The signals and what they give."""
+        """The signals and what they give.
+
+        Raises
+        ------
+        StorageError
+            If a file cannot be read.
+        InvalidQuantity
+            If a unit or a column is missing or the signals of a test do not determine a modulus, with the file.
+        ConvergenceError
+            If the frequency of a test is refined and not found.
+        """
         if self.path is not None:
             signals = read_dma_tests(self.path, area=self.area, height=self.height)
             with of_file(self.path):

@@ -20,7 +20,7 @@ from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 
 TIMES = (1e-6, 1e6)
-"""Times in s between which the atrium is asked when its modulus is that of the reading."""
+"""Times in s between which the one is sought at which the modulus of the atrium is that of the reading."""
 
 
 @dataclass(frozen=True)
@@ -117,7 +117,13 @@ class RankingReport:
         }
 
     def add_atrium(self, reading: float, times: Sequence[float], shape: int) -> None:
-        """What a reading on porcine atrium means under a shape, counted from 0, and what Table 4.1 reads at times in s."""
+        """What a reading on porcine atrium means under a shape, counted from 0, and what Table 4.1 reads at times in s.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the reading is not in [0, 100).
+        """
         compliance, finding = table_4_1(), self._finished[shape]
         moduli = {
             "instantaneous": 1 / compliance.glassy_compliance,

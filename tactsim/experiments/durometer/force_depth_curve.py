@@ -22,6 +22,8 @@ class ForceDepthCurve:
     .. math:: F(d) = E\, f(d)
 
     Shape, specimen, indentor and friction fix f. ``depth`` (n,) in m increases, ``force_per_modulus`` (n,) in m^2 is f there.
+
+    Source: scaling: a factor of the energy is one of every stress at the same deformation, which stays in equilibrium.
     """
 
     depth: Array

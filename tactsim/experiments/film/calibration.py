@@ -22,7 +22,8 @@ from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.units import Force, Positive, format_quantity
 
 FOLLOWING = 3.0
-"""Standard deviations of the residuals' correlation with their neighbours in force from which they are said to follow a curve."""
+"""Correlation of the residuals with their neighbours in force, in its standard deviations, from which they are said to follow
+a curve."""
 
 
 class ForceCalibration(Experiment):
@@ -134,7 +135,7 @@ class ForceCalibration(Experiment):
         curved = [k + 1 for k in range(fit.slope.size) if self._curved(force, fit, k)]
         if curved:
             which = "" if fit.slope.size == 1 else f" of sensor {', '.join(map(str, curved))}"
-            warnings.append(f"the residuals{which} follow a curve: the intervals, which know noise alone, are too narrow")
+            warnings.append(f"the residuals{which} follow a curve: the intervals, which allow for noise alone, are too narrow")
         return warnings
 
     def _curved(self, force: Array, fit: CalibrationFit, sensor: int) -> bool:

@@ -73,7 +73,15 @@ class MeasuredCreep(FrozenModel):
     """Area of the sample that carries the force."""
 
     def tests(self) -> list[CreepTest]:
-        """The tests."""
+        """The tests.
+
+        Raises
+        ------
+        StorageError
+            If the file cannot be read.
+        InvalidQuantity
+            If a column is missing, a row is wrong or no creep can be fitted to a test, with the file.
+        """
         return read_creep(self.path)
 
 

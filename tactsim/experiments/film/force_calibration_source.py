@@ -20,6 +20,7 @@ from tactsim.units import Force, NonNegative, Time
 Readings = tuple[Array, Array, Array]
 """Forces in N of shape (points,), voltages in V and whether each is saturated, of shape (points, sensors)."""
 MOST_SENSORS = 64
+"""Sensors of one calibration, at most: a file has a column for each."""
 MOST_NUMBERS = 100_000_000
 """Samples of all sensors, holds and repeats together."""
 

@@ -69,7 +69,13 @@ class SensorResponse(Experiment):
         return cls(force=Square(kind="square", duration=2.0), chain=SignalChain(sampling_rate=200.0))
 
     def begin(self) -> Course:
-        """One step for every sample."""
+        """One step for every sample.
+
+        Raises
+        ------
+        InvalidQuantity
+            If there are too many samples, or the force changes too fast for them.
+        """
         times = self._times()
         force = self.force.sampled(times)
         conductance = self.film.read(times, force)

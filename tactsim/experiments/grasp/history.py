@@ -10,6 +10,7 @@ from tactsim.results.result import Result
 MOST_COLUMNS = 8
 """Rows and columns of a matrix up to which the history has a column for every taxel."""
 MOST_LUMENS = 32
+"""Lumens whose pressures the history can name: as many as a grasp may have inclusions."""
 AXES = "xyz"
 
 

@@ -19,13 +19,14 @@ from tactsim.mechanics.paths.history_path import EquilibriumProblem, TimedPath, 
 SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
 SWITCH_OF_HEIGHT = 0.05
-"""Length over which the state of a surface point may change its mind, over the height of the block."""
+"""Length over which a violated contact counts as much as the largest pressure, over the height of the block."""
 TOUCH = 0.02
 """First guess of a closing under a force, so that the jaws touch, over the penetration without multipliers."""
 LUMEN = "lumen:"
 """Beginning of the names of facets inside a hollow tube."""
 FIRST_PART = 0.6
-"""Part of a closing by which the first guess compresses the block: Newton comes from there in fewest iterations, of 0.5 to 1."""
+"""Part of a closing by which the first guess compresses the block: of the parts from 0.5 to 1, Newton takes the fewest
+iterations from this one."""
 
 
 def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
@@ -33,6 +34,13 @@ def grasp_path(experiment: GraspSetup, model: GraspModel) -> TimedPath:
 
     Without a tolerance of its own, a grasp gets one at its largest closing or force with which it misses as little force as a
     success may.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the histories ask for too many steps.
+    InputError
+        If a jaw does not meet the block.
     """
     start = TimedState.at_rest(
         model.body, model.start(experiment.contact, regularisation(experiment)), 1 + len(experiment.lumens)

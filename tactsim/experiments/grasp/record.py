@@ -95,7 +95,7 @@ class GraspRecord(ContactRecord[GraspModel]):
         return names
 
     def verdict(self) -> tuple[Status, str]:
-        """Success: a grasp looks for nothing on its way."""
+        """Success: a grasp has no event to look for on its way."""
         return Status.CONVERGED, "end of the history"
 
     def findings(self) -> Findings:

@@ -72,7 +72,7 @@ class GraspRecorder(Recorder):
         return variables
 
     def labels(self, experiment: Grasp) -> Values:
-        """Values of the same; what a kind of inclusion does not have is NaN, and a lump of the tissue's own material is none.
+        """Values of these labels; what a kind of inclusion does not have is NaN, and a lump of the tissue's own material is none.
 
         Raises
         ------

@@ -15,11 +15,11 @@ from tactsim.units import format_quantity
 AT_END = "at the end; [row][column], row 1 nearest the front (smallest y), column 1 the smallest x"
 OVER_TIME = "at each of readout_time, [time][row][column]"
 ENOUGH_STEPS = 5
-"""Steps of time with which read forces are those of many. A grasp of ICF closed by 1 mm, composite film: with one step they are
-3.7 % above those of twenty, with two 1.1 %, with five 0.3 %, as forces rise ever faster."""
+"""Steps of time with which the forces read are nearly those of many steps. A grasp of ICF closed by 1 mm, composite film: with
+one step they are 3.7 % above those of twenty, with two 1.1 %, with five 0.3 %, as forces rise ever faster."""
 REMEMBERED = 0.01
-"""Relative difference of the signal of a force that rises in the second half only from that of one that rises evenly, from which
-on a film remembers its history."""
+"""A film counts as remembering its history if its signal under a force that rises in the second half only differs by more than
+this part from that under one that rises evenly."""
 
 
 def readout_quantities(reading: MatrixReading) -> dict[str, Quantity]:

@@ -32,7 +32,7 @@ def ragged(block: BlockMesh) -> list[str]:
 
 
 def smaller_elements(block: BlockMesh) -> list[str]:
-    """That elements had to be smaller than asked for to follow the inclusions, if they had."""
+    """A warning if elements had to be smaller than asked for to follow the inclusions."""
     if block.part == 1:
         return []
     return [

@@ -35,7 +35,8 @@ LONG = 1.3
 LARGEST_GROWTH = 4.0
 """The mesh is not refined beyond this many times its first number of elements."""
 FINER = 2.0
-"""Factor of the mesh's refinement that is advised where an element collapsed: it led through wherever it was tried."""
+"""Factor of the mesh's refinement that is advised where an element collapsed: with it every such run that was tried came to
+its end."""
 RESTART = 0.5
 """First step on a refined mesh, as a part of the last one: there is nothing yet to extrapolate."""
 PAST_PEAK = 0.95

@@ -35,7 +35,7 @@ UNSHIFTED = 1.2
 OBLIQUE_PENETRATION = 3e-4
 """Penetration over the radius that is allowed by default of a body that leans or is off the axis, around which points stick and
 slip one by one: with a third of it a sensor that leans by 3 degrees on a thin layer does not come to its end in five minutes,
-with it in one. Multipliers instead of a stiff contact take half the time, but the force depends on the way to it by 7e-4 then."""
+with it in one. Multipliers instead of a stiff contact take half the time, but then the force depends on the load path by 7e-4."""
 FEW_ITERATIONS, MANY_ITERATIONS = 12, 20
 """Steps grow up to so many iterations of Newton, and shrink beyond so many: friction in 3D takes more than in a section."""
 
@@ -127,7 +127,13 @@ class Indentation3D(DisplacedSetup, Experiment):
         return replace(super().control(), few_iterations=FEW_ITERATIONS, many_iterations=MANY_ITERATIONS)
 
     def model(self) -> SolidModel:
-        """The finite element model in 3D, the body's axis at the origin of x and y."""
+        """The finite element model in 3D, the body's axis at the origin of x and y.
+
+        Raises
+        ------
+        InputError
+            If the mesh would have too many elements or unknowns.
+        """
         from tactsim.mechanics.models.solid_model import SolidModel
 
         section, symmetry = self.section(), self.symmetry

@@ -109,7 +109,7 @@ class IndentationRecord(ContactRecord[PressedModel]):
         return ("last",) if self._kept else ("first", "last")
 
     def verdict(self) -> tuple[Status, str]:
-        """As the touch of the inner sensor, or none, ends what the case asks for."""
+        """Status and reason, by whether the tissue touched the inner sensor and what the case asks for."""
         return self._drive.ending(touched=self.event is not None)
 
     def quantities(self) -> dict[str, Quantity]:

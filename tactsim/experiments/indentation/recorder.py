@@ -71,7 +71,7 @@ class PressedBodyRecorder(Recorder):
         return [label(name, unit, words) for name, (unit, words) in self.label_words().items()]
 
     def labels(self, experiment: Any) -> Values:
-        """Values of the same."""
+        """Values of these labels."""
         shape, recess, material = experiment.body.contact_shape, experiment.recess, experiment.specimen.material
         relaxation = shear_relaxation(material)
         known = {

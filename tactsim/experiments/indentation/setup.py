@@ -70,7 +70,7 @@ class Timed(Drive):
     compare: Literal["half_space", "layer"] | None
     """Closed form that the answer is compared with."""
     compared_from: float
-    """Time in s from which on it counts."""
+    """Time in s from which on the comparison counts."""
 
     @property
     def by_force(self) -> bool:
@@ -99,7 +99,8 @@ class IndentationSetup(FrozenModel):
     measure: ClassVar[Measure] = "axisymmetric"
     """What the section stands for."""
     if_slow: ClassVar[str] = ""
-    """Behind the reason of a run whose time did not suffice: what takes less of it than with ``{tolerance}``."""
+    """What is added to the reason of a run whose time did not suffice: what takes less time than a tolerance of
+    ``{tolerance}``."""
     specimen: Specimen
     """The tissue."""
     body: AnyBody = Annulus()
@@ -226,7 +227,13 @@ class IndentationSetup(FrozenModel):
         return GradedSection(specimen, self.mesh, shape, rims=rims, reach=reach, usual=usual)
 
     def model(self) -> PressedModel:
-        """The finite element model of the tissue."""
+        """The finite element model of the tissue.
+
+        Raises
+        ------
+        InputError
+            If the mesh would have too many elements.
+        """
         from tactsim.mechanics.models.section_model import SectionModel
 
         section, specimen = self.section(), self.specimen

@@ -70,7 +70,15 @@ class Confusion(Experiment):
         return cls(grasps=(plain, "cases/stored/grasp_lump"), reference=plain, noise=1e-3, estimator=estimator)
 
     def begin(self) -> Course:
-        """One step per grasp, with the share of its draws whose class was estimated right."""
+        """One step per grasp, with the share of its draws whose class was estimated right.
+
+        Raises
+        ------
+        StorageError
+            If a result is missing or cannot be read.
+        InputError
+            If one is not that of a grasp with taxels, or has inclusions of no class.
+        """
         plain, counted = stored_grasp(self.reference), _Counted()
         stored = [stored_grasp(folder) for folder in self.grasps]
         doubts = [*unfinished_notes(plain, self.reference), *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
@@ -199,7 +207,7 @@ class NamedReadings:
 
 @dataclass
 class _Counted:
-    """What the grasps that were estimated until now make."""
+    """What was counted of the grasps estimated so far."""
 
     table: ConfusionTable = field(default_factory=ConfusionTable)
     steps: list[StepRecord] = field(default_factory=list)

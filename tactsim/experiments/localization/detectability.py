@@ -42,7 +42,7 @@ NOISES = ("same", "by_area")
 
 @dataclass
 class _Outcome:
-    """What the matrices that were computed until now find."""
+    """What the matrices computed so far find."""
 
     steps: list[StepRecord] = field(default_factory=list)
     radii: list[dict[str, list[list[float | None]]]] = field(default_factory=list)
@@ -207,7 +207,17 @@ class Detectability(Experiment):
 
 
 def coarse_response(setup: GraspSetup) -> LumpResponse:
-    """The response of the taxels of a grasp on a coarse grid of centres and radii."""
+    """The response of the taxels of a grasp on a coarse grid of centres and radii.
+
+    Raises
+    ------
+    InputError
+        If the grasp has an inclusion.
+    ConvergenceError
+        If no step of its history converges.
+    OutOfTime
+        If its time has passed, or it was stopped.
+    """
     from tactsim.experiments.localization.lump_sensitivity import sensitivity
 
     size = setup.block.size

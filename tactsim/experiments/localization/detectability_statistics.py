@@ -7,6 +7,8 @@ With forces d whose errors are Gaussian of standard deviation :math:`\sigma`, ea
 
 for a ball of contrast c, and around zero without one. A ball is found if the largest :math:`|z|` over all candidates exceeds a
 threshold; ``false_alarm_threshold`` finds it by seeded draws, as the candidates depend on each other.
+
+Source: G. L. Turin 1960, doi:10.1109/TIT.1960.1057571, for the filter.
 """
 
 from __future__ import annotations
@@ -19,6 +21,7 @@ from tactsim.deadline import check_time
 from tactsim.localization.lump_response import LumpResponse
 
 BLOCK_OF_DRAWS = 250
+"""Draws that are matched together, which bounds the memory."""
 FEWEST = 1e-4
 """Least radius in m that is sought: a tenth of a millimetre."""
 CLOSE = 1e-7
@@ -34,7 +37,14 @@ def unit_templates(response: LumpResponse, every: int) -> Array:
 
 
 def false_alarm_threshold(templates: Array, rate: float, *, draws: int, seed: int) -> float:
-    """What the largest ``|z|`` of the templates (n, taxels) exceeds in a share ``rate`` of seeded draws of errors alone."""
+    """Threshold that the largest ``|z|`` of the templates (n, taxels) exceeds in a share ``rate`` of seeded draws of errors
+    alone.
+
+    Raises
+    ------
+    OutOfTime
+        If the time limit has passed, or another thread has stopped the computation.
+    """
     generator = np.random.default_rng(seed)
     largest = []
     for begin in range(0, draws, BLOCK_OF_DRAWS):

@@ -94,7 +94,16 @@ class Localization(Experiment):
         return cls(grasp="cases/stored/grasp_lump", reference="cases/stored/grasp_plain", noise=1e-3, estimator=estimator)
 
     def begin(self) -> Course:
-        """One step: the last of the grasp."""
+        """One step: the last of the grasp.
+
+        Raises
+        ------
+        StorageError
+            If a result is missing or cannot be read.
+        InputError
+            If one is not that of a grasp with taxels, the reference has another block, matrix or closing, a dead taxel is none of
+            the matrix, or the estimator refuses the readings.
+        """
         stored = stored_grasp(self.grasp)
         plain = None if self.reference is None else stored_grasp(self.reference)
         readings = self._readings(stored, plain)

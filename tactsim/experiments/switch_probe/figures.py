@@ -20,7 +20,7 @@ from tactsim.units import format_quantity
 
 COLOURS = (*LINE_COLOURS, "#795548")
 LINES, MARKS = ("-", "--", "-.", ":"), ("o", "s", "^", "D", "v")
-"""Of the curves, which print in grey tells apart."""
+"""Lines and marks of the curves, which differ in a grey print, too."""
 CLOSED, OPEN = "#2e7d32", "#d5d8dc"
 FACE, HEIGHT, LEAN = 2.0, 5.6, np.tan(np.radians(20))
 """Drawn half width of the face and height in pitches; the picture of the probe is a scheme."""

@@ -64,6 +64,11 @@ def probe_forces(time: Array, depth: Array, *, curve: ProbeCurve, modulus: Gener
     The contact opens where the superposed force would pull: there all forces are zero. Beside finite elements of the same tissue
     at 0.5 to 3 mm/s, the force on the probe is within 2 % down to 5 mm (0.7 % at 1 mm/s), that on a switch at the edge of the
     contact within 30 %.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the times do not increase, or are not as many as the depths.
     """
     force, height, switches = curve.at(depth)
     elastic = modulus.instantaneous_modulus * width * np.column_stack([force, switches])

@@ -33,7 +33,7 @@ class SwitchProbeRecorder(Recorder):
         return [label(name, unit, words) for name, (unit, words) in LABELS.items()]
 
     def labels(self, experiment: Any) -> Values:
-        """Values of the same.
+        """Values of these labels.
 
         Raises
         ------
@@ -64,7 +64,7 @@ class SwitchProbeRecorder(Recorder):
         ]
 
     def readings(self, experiment: Any, result: Result, generator: np.random.Generator) -> Values:
-        """Values of the same."""
+        """Values of these readings."""
         values = {name: quantity.value for name, quantity in result.quantities.items()}
         readings = {name: np.array(values.get(f"{name}_1", np.nan)) for name in ("largest_force", "contact_height", "mean_rate")}
         readings["closed_switches"] = np.array(float(values.get("closed_switches_1", 0)))

@@ -21,7 +21,7 @@ from tactsim.sensors.switch_reading import Touch, read_switches
 REST = 0.2
 """Time in s before the touch, in which the electronics see no force."""
 ROUND_OFF = 1e-6
-"""Of a sampling time, in sampling steps."""
+"""Round-off of a sampling time, in sampling steps."""
 
 
 @dataclass(frozen=True, eq=False)

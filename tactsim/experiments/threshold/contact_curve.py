@@ -172,6 +172,8 @@ def continued(rows: Array, shape: SensorShape, beyond: float) -> Array:
     .. math:: k_s = \frac{b}{a \kappa} \frac{dP}{d\epsilon}
 
     since an annulus has 8 G a kappa and a punch of the hole's radius 8 G b.
+
+    Source: thesis, eq. 4.2.21, for the annulus; Sneddon 1965, doi:10.1016/0020-7225(65)90019-4, for the punch; nu = 1/2.
     """
     last, step = rows[-1], rows[-1] - rows[-2]
     slopes = step / step[0]

@@ -118,7 +118,13 @@ class ApproachSampling:
         trials: int,
         seed: tuple[int, ...],
     ) -> list[Trials]:
-        """Reports for each low pass with its trigger, all from the same recordings; without noise one trial for each phase."""
+        """Reports for each low pass with its trigger, all from the same recordings; without noise one trial for each phase.
+
+        Raises
+        ------
+        OutOfTime
+            If the time limit has passed, or another thread has stopped the computation.
+        """
         blocks = -(-trials // BLOCK)
         reports: list[list[Threshold]] = [[] for _ in low_passes]
         touches = []
@@ -135,7 +141,12 @@ class ApproachSampling:
     def ideal_error(self, low_pass: LowPass | None, level: float, *, films: bool = True) -> float | None:
         """Error in N in continuous time, without noise and rounding; None if nothing is reported.
 
-        With or without filter; without ``films`` both sensors conduct what their lines say.
+        Without ``low_pass`` nothing is filtered; without ``films`` both sensors conduct what their calibration lines say.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the level is not positive or not finite.
         """
         converter = self.sensor.chain.converter
         fine = Converter(low=converter.low, high=converter.high, bits=32)

@@ -141,7 +141,13 @@ class RunSource(Source):
     """Displacement by which a run that stopped at its threshold is continued with its last slopes."""
 
     def tissue(self) -> Tissue:
-        """The curve in the folder."""
+        """The curve in the folder.
+
+        Raises
+        ------
+        StorageError
+            If the folder holds no result that can be read.
+        """
         yield from ()
         return ContactCurve.of_result(read_basis(self.path).result, beyond=self.beyond)
 

@@ -1,4 +1,4 @@
-"""What one sensor of a tip meets: forces over displacement in closed form or from curves, and the error they are known to."""
+"""What one sensor of a tip meets: forces over displacement in closed form or from curves, and how large their error may be."""
 
 from __future__ import annotations
 
@@ -21,6 +21,9 @@ class SensorContact:
     .. math:: P = P^* d / d^*, \qquad P_s = k_s \frac{L}{d^*} (d - d^*)_+
 
     with the threshold at force P* and displacement d*, and k_s of a solid punch of the hole's radius.
+
+    Source: thesis, eq. 4.2.21: a flat face on a linear solid meets a force in proportion to its displacement; the punch after
+    Sneddon 1965, doi:10.1016/0020-7225(65)90019-4.
     """
 
     force: float
@@ -74,7 +77,7 @@ def mixed_contacts(curves: Sequence[ContactCurve], shares: Array, factors: Array
 
 
 def _mixed(curves: Sequence[ContactCurve], shares: Array, force: float, displacement: float) -> CurveContact:
-    """At equal parts of the displacement of each tissue's threshold, and at equal ways past it."""
+    """The curves mixed at equal parts of the displacement of each tissue's threshold, and at equal distances past it."""
     at = displacement * float(shares @ np.array([curve.threshold_displacement for curve in curves]))
     beyond = min(float(curve.displacement[-1]) - curve.threshold_displacement for curve in curves)
     parts, ways = np.linspace(0.0, 1.0, ROWS), np.linspace(0.0, beyond, ROWS)[1:]

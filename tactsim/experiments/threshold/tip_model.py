@@ -44,9 +44,10 @@ FLAT_ERRORS = (
     (0.15, -0.008, 0.073),
 )
 """Neo-Hookean layers of 2 to 6 outer radii, bonded or slipping; fillet a twentieth of the radius, friction 0 to 0.4. A test
-computes rows again; at 0.20, with friction 0.4, it is 0.175."""
+computes rows anew; beyond them, at 0.20 with friction 0.4, the difference is 0.175."""
 FLAT_OWN = 0.007
-"""Part of these errors that sensors do not share: at one recess and friction the thicknesses and bases differ by up to 1.3 %."""
+"""Part of these errors, up or down, that sensors do not share: at one recess and friction it varies by up to 1.3 % in all with
+thickness and base."""
 BORDER_ERROR = 0.06
 """Error of the mean by area at a border over the logarithm of the ratio of the two thresholds, at most: the linear model in 3D
 differs by 2.4 % at a ratio of 2, 8.8 % at 6, and by 6.6 % at 3 where thickness and base change too. A test computes it again."""

@@ -74,6 +74,11 @@ class TaylorHood:
     elements : (E, A) node numbers, corners first
     measure : what a volume means: "axisymmetric", "plane_strain" or "solid"
     regions : (E,) numbers; None means that the pressure is continuous everywhere
+
+    Raises
+    ------
+    InputError
+        If nodes or elements have too many or too few columns for the measure, or a node of an axisymmetric mesh lies at r < 0.
     """
 
     nodes: Array

@@ -77,7 +77,13 @@ class Pardiso:
         self._take(matrix, ANALYSE_AND_FACTOR if self._system is None else FACTOR)
 
     def analyse(self, matrix: csr_matrix) -> FactorSize:
-        """Size of the factors of matrices of this pattern, whose values do not matter if nothing is matched; factor them next."""
+        """Size of the factors of matrices of this pattern, whose values do not matter if nothing is matched; factor them next.
+
+        Raises
+        ------
+        ConvergenceError
+            If the matrix holds numbers that are not finite, or too large for single precision.
+        """
         self._solver.iparm[ENTRIES] = self._solver.iparm[OPERATIONS] = -1
         self._take(matrix, ANALYSE)
         return FactorSize(float(self._solver.iparm[ENTRIES]), 1e6 * float(self._solver.iparm[OPERATIONS]))

@@ -105,7 +105,13 @@ def call_pardiso(solver: Any, phase: int, system: CompressedRows, right: Array, 
 
 
 def fresh_binding(kind: int) -> Any:
-    """pypardiso's binding for a kind of matrix, with handles of its own."""
+    """pypardiso's binding for a kind of matrix, with handles of its own.
+
+    Raises
+    ------
+    InputError
+        If the library of MKL is not found.
+    """
     binding = _pardiso_binding(kind)
     fresh = copy.copy(binding)
     fresh.pt, fresh.iparm, fresh.perm = np.zeros_like(binding.pt), np.zeros_like(binding.iparm), np.zeros_like(binding.perm)

@@ -72,7 +72,13 @@ class Samples:
 
     @cached_property
     def sweep(self) -> Sweep:
-        """The sweep that made the data set."""
+        """The sweep that made the data set.
+
+        Raises
+        ------
+        StorageError
+            If the store cannot be opened, or the text of its sweep is damaged or of another version.
+        """
         return stored_sweep(Store.open(self.place))
 
     def chosen(self, split: str = ANY, status: str = ANY) -> Array:
@@ -93,7 +99,13 @@ class Samples:
         return np.flatnonzero(keep)
 
     def near(self, number: int, move: int, split: str = ANY, status: str = ANY) -> int | None:
-        """``move`` 1: the next chosen sample, -1: the one before, both around the end, 0: that nearest to ``number``."""
+        """``move`` 1: the next chosen sample, -1: the one before, both around the end, 0: that nearest to ``number``.
+
+        Raises
+        ------
+        InputError
+            If there is no such part or status.
+        """
         chosen = self.chosen(split, status)
         if not len(chosen):
             return None

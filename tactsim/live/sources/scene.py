@@ -101,7 +101,13 @@ def check_extent(size: Array) -> None:
 
 
 def plain_scene(title: str, size: Array, layout: TaxelLayout) -> PageScene:
-    """A scene of which no more is known: the jaws are a quarter wider than the block, (3,) in m, and touch it in its middle."""
+    """A scene of which no more is known: the jaws are a quarter wider than the block, (3,) in m, and touch it in its middle.
+
+    Raises
+    ------
+    InputError
+        If the size is not three lengths that can be drawn.
+    """
     check_extent(size)
     settings = JawSettings()
     settings = settings.model_copy(update={"fillet": min(settings.fillet, FILLET * float(size.min()))})

@@ -57,7 +57,13 @@ class LearnedEstimator(Estimator):
 
     @classmethod
     def checked(cls, path: str | Path) -> Self:
-        """The estimator of a file that is there and can be read."""
+        """The estimator of a file that is there and can be read.
+
+        Raises
+        ------
+        StorageError
+            If there is no such file, or it does not hold the weights of this version.
+        """
         read_weights(path)
         return cls(weights=str(path))
 

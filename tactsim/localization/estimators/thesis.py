@@ -65,7 +65,13 @@ class ThesisEstimator(Estimator):
         return self.background == "reference"
 
     def estimate(self, readings: Readings) -> Estimate:
-        """An inclusion for every separate place, without radius, contrast or covariance, the strongest first."""
+        """An inclusion for every separate place, without radius, contrast or covariance, the strongest first.
+
+        Raises
+        ------
+        InputError
+            If the reference is the background and the readings have none.
+        """
         signal, softer = self._signal(readings)
         upper, lower = np.maximum(signal, 0.0)
         total = upper + lower

@@ -7,6 +7,8 @@ an overdamped body in pseudo-time,
 .. math:: f_{ext}(u_{n+1}) - f_{int}(u_{n+1}) = c\,(u_{n+1} - u_n),
 
 with a drag c in proportion to the volume, which falls from step to step until the equilibrium without drag is reached.
+
+Source: Kelley & Keyes 1998, doi:10.1137/S0036142996304796, for such continuation in pseudo-time.
 """
 
 from __future__ import annotations

@@ -119,7 +119,13 @@ class GraspModel:
         raise InputError(f"the {side} jaw does not meet the block; its middle is at {self.offsets[side].tolist()} m in x and y")
 
     def start(self, law: ContactLaw, regularisation: Regularisation) -> ContactEquilibrium:
-        """The undeformed block between jaws that just touch it."""
+        """The undeformed block between jaws that just touch it.
+
+        Raises
+        ------
+        InputError
+            If a jaw does not meet the block.
+        """
         contacts = tuple(
             PosedContact.apart(
                 self.surfaces[side],

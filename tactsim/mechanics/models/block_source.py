@@ -100,7 +100,15 @@ class TetrahedraSource(SizedSource):
     """Edge length far from inclusions and jaw edges; by default 3 mm, or 0.15 of the block's least side if that is less."""
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
-        """The mesh of a block of this size in m, shipped, cached, or made now; finer at edges of narrow ``flats`` (2, 2) in m."""
+        """The mesh of a block of this size in m, shipped, cached, or made now; finer at edges of narrow ``flats`` (2, 2) in m.
+
+        Raises
+        ------
+        StorageError
+            If a shipped mesh is not the one its manifest describes.
+        InputError, ConvergenceError
+            As ``tetrahedra.block_mesh``.
+        """
         from tactsim.mesh.mesh_store import stored_block_mesh
 
         stored = stored_block_mesh(size, inclusions, self.settings(size, flats))
@@ -162,7 +170,13 @@ class GradedSource(SizedSource):
         return reason and f"graded: {reason}"
 
     def sourced(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> SourcedBlock:
-        """The mesh of a block of this size in m around its inclusions, if any; with the edges of ``flats`` (2, 2) in m."""
+        """The mesh of a block of this size in m around its inclusions, if any; with the edges of ``flats`` (2, 2) in m.
+
+        Raises
+        ------
+        InputError, ConvergenceError
+            As ``graded_block``.
+        """
         from tactsim.mesh.graded.block import graded_block
 
         block = graded_block(size, inclusions, self.settings(size, flats), flats)

@@ -164,7 +164,13 @@ class PrescribedMotions:
 
     @property
     def move(self) -> bool:
-        """Whether anything moves at the factor one."""
+        """Whether anything moves at the factor one.
+
+        Raises
+        ------
+        InputError
+            If two motions prescribe different displacements of one node.
+        """
         return self.at((1.0,) * len(self._motions)).differs(self.at((0.0,) * len(self._motions)))
 
     def at(self, factors: Sequence[float]) -> Prescribed:

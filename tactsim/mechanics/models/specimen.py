@@ -92,6 +92,11 @@ class Specimen(FrozenModel):
         """Section of the specimen, r >= 0, the top of the axis at z = 0; nodes of a curved top lie on it.
 
         ``keys`` is what messages call that which the size follows from.
+
+        Raises
+        ------
+        InputError
+            If the mesh would have too many elements, or the wanted size is not positive somewhere.
         """
         flat = section_mesh(self.radius, self.interfaces, size, rings=rings, keys=keys)
         if self.surface == "flat":

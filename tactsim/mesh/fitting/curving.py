@@ -111,7 +111,14 @@ def assembled(
     part: float = 1.0,
     fitting: bool = True,
 ) -> BlockMesh:
-    """The block mesh of a mesh, measured; and checked if it is ``fitting``, that is made to follow the surfaces."""
+    """The block mesh of a mesh, measured; and checked if it is ``fitting``, that is made to follow the surfaces.
+
+    Raises
+    ------
+    ConvergenceError
+        If a facet of the boundary lies on no face of the block or, if it is ``fitting``, a region misses its volume, a face
+        is not flat or an element is inverted.
+    """
     ratios = mean_ratio(mesh.nodes, mesh.elements[:, :4])
     curvature = float(jacobian_ratio(mesh.nodes, mesh.elements).min())
     block = BlockMesh(

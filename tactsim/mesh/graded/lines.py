@@ -93,7 +93,13 @@ def lines_around(ball: BallImage, bounds: Array, extent: Array, settings: BlockM
 
 
 def mirrored_line(length: float, settings: BlockMeshSettings) -> Array:
-    """Ascending places (n,) in m from face to face, those of one half the mirror image of the others."""
+    """Ascending places (n,) in m from face to face, those of one half the mirror image of the others.
+
+    Raises
+    ------
+    InputError
+        If the cells are too many.
+    """
     half = spaced(length / 2, settings)
     return np.concatenate([half, length - half[-2::-1]])
 
@@ -193,6 +199,11 @@ def beside_boxes(left: Array, room: Array, half: Array, settings: BlockMeshSetti
 
     Beside the boxes the widths are ``left`` (n, 2). From the middles of the bodies it is ``room`` (n, 2) to the faces before and
     after, and ``half`` (n, 1) or (n, 2) to their bounds.
+
+    Raises
+    ------
+    InputError
+        If the cells are too many.
     """
     least = np.minimum(edge_thickness(settings), room - CORE_ROOM * half)
     far = np.where(left > 0, np.maximum(left, least), 0.0)

@@ -98,6 +98,8 @@ def section_stretches(inside: Array) -> Array:
     .. math:: E = (1 - t t^T)^{-1/2} = 1 + \frac{1}{c\,(1 + c)} t t^T, \quad c = \sqrt{1 - |t|^2}
 
     with the part t (..., 2) of the unit tangent in the plane of the section.
+
+    Source: derived here: the section is where the part of a point across the tangent has unit length.
     """
     cosine = np.sqrt(1 - (inside**2).sum(axis=-1))[..., None, None]
     return np.asarray(np.eye(2) + inside[..., :, None] * inside[..., None, :] / (cosine * (1 + cosine)))

@@ -44,17 +44,41 @@ class Surface(Inclusion):
         return cls(path="meshes/lump.stl", unit="mm", translation=(20e-3, 20e-3, 10e-3))
 
     def identity(self) -> str:
-        """Text that changes with the geometry, whatever the file is called."""
+        """Text that changes with the geometry, whatever the file is called.
+
+        Raises
+        ------
+        StorageError
+            If the file cannot be read or is damaged.
+        InputError
+            If it holds anything other than triangles in 3D.
+        """
         vertices, triangles = read_surface(self.path)
         place = repr((self.unit, self.translation, self.rotation)).encode()
         return hashlib.sha256(vertices.tobytes() + triangles.tobytes() + place).hexdigest()
 
     def file_content(self) -> str:
-        """Hash of the vertices and triangles in the file."""
+        """Hash of the vertices and triangles in the file.
+
+        Raises
+        ------
+        StorageError
+            If the file cannot be read or is damaged.
+        InputError
+            If it holds anything other than triangles in 3D.
+        """
         return _content(*_file(self.path))
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
-        """The body inside the surface, whatever the size (3,) of the block."""
+        """The body inside the surface, whatever the size (3,) of the block.
+
+        Raises
+        ------
+        StorageError
+            If the file cannot be read or is damaged.
+        InputError
+            If it holds anything other than triangles in 3D.
+        """
         return (_placed(self, *_file(self.path)),)
 
 

@@ -80,6 +80,8 @@ class SweptSolid(Solid):
         .. math:: V = \int\!\int\!\int [x(s, \rho, \theta) \in B]\, (1 - \kappa \cdot d)\, ds\, \rho\, d\rho\, d\theta
 
         with the offset d from the line and its curvature vector; where a fibre leaves the block is interpolated.
+
+        Source: H. Weyl 1939, doi:10.2307/2371513, for the element of volume.
         """
         line, s = self.line, self.line.stations
         on, derivative, _ = line.derivatives(s)

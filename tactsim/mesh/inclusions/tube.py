@@ -69,7 +69,13 @@ class Tube(Inclusion):
         return f"{super().identity()}-{WALL_SIZE}"
 
     def solids(self, size: Array) -> tuple[Solid, ...]:
-        """The filled tube and the empty space in it, both long enough to leave the block, size (3,) in m, where the tube does."""
+        """The filled tube and the empty space in it, both long enough to leave the block, size (3,) in m, where the tube does.
+
+        Raises
+        ------
+        InvalidQuantity
+            If points of the centre line coincide.
+        """
         line = extended(self.centre_line, self.outer_radius, tuple(map(float, size)))
         return SweptSolid(line, self.outer_radius, size), SweptSolid(line, self.inner_radius, size)
 
@@ -81,7 +87,13 @@ class Tube(Inclusion):
         return Measures(center, self.outer_radius, top, along / np.linalg.norm(along), self.wall)
 
     def places(self, size: Array) -> Array:
-        """Points (n, 3) in m along the centre line in the block of size (3,) in m."""
+        """Points (n, 3) in m along the centre line in the block of size (3,) in m.
+
+        Raises
+        ------
+        InvalidQuantity
+            If points of the centre line coincide.
+        """
         line = extended(self.centre_line, self.outer_radius, tuple(map(float, size)))
         points = line.derivatives(np.linspace(*line.limits, ALONG_LINE))[0]
         return points[((points >= 0) & (points <= size)).all(axis=1)]

@@ -34,7 +34,13 @@ class Noise(FrozenModel):
         return self.white == 0 and self.line == 0
 
     def phases(self, channels: tuple[int, ...], generator: np.random.Generator | None) -> Array:
-        """Phases in rad of the pick-up, one per channel, uniform over the circle; zeros, undrawn, without pick-up."""
+        """Phases in rad of the pick-up, one per channel, uniform over the circle; zeros, undrawn, without pick-up.
+
+        Raises
+        ------
+        InvalidQuantity
+            If there is pick-up and no generator.
+        """
         if self.line == 0:
             return np.zeros(channels)
         return 2 * np.pi * required(generator).random(channels)
@@ -43,6 +49,11 @@ class Noise(FrozenModel):
         """Noise in V at times in s, shape ``(time, *channels)``.
 
         Samples are drawn in the order of time, so consecutive calls with one generator give the noise of one long call.
+
+        Raises
+        ------
+        InvalidQuantity
+            If there is white noise and no generator.
         """
         shape = (time.size, *phases.shape)
         noise = self.white * required(generator).standard_normal(shape) if self.white else np.zeros(shape)

@@ -124,11 +124,23 @@ class SignalChain(FrozenModel):
         return sampled, (1 - share) * values[after - 1] + share * values[after]
 
     def voltage(self, conductance: Array) -> Array:
-        """Voltage in V of the divider for conductances in S of any shape, without buffer errors and noise (2.2.1)."""
+        """Voltage in V of the divider for conductances in S of any shape, without buffer errors and noise (2.2.1).
+
+        Raises
+        ------
+        InvalidQuantity
+            If a conductance is negative, not finite or too large.
+        """
         return divider_voltage(conductance, supply=self.supply, load=self.load_resistor)
 
     def conductance(self, voltage: Array) -> Array:
-        """Conductance in S for voltages in V of any shape, the inverse of `voltage`; errors of the buffer remain in it."""
+        """Conductance in S for voltages in V of any shape, the inverse of `voltage`; errors of the buffer remain in it.
+
+        Raises
+        ------
+        InvalidQuantity
+            If a voltage is not finite or not below the supply.
+        """
         return divider_conductance(voltage, supply=self.supply, load=self.load_resistor)
 
     def read_conductance(self, voltage: Array) -> Array:

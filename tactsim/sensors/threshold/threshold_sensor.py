@@ -86,7 +86,13 @@ class ThresholdSensor(FrozenModel):
         return self._force(self.large, captured), self._force(self.small, filtered[:, SMALL])
 
     def armed(self, low_pass: LowPass | None, *, noise: Noise, seed: list[int]) -> ThresholdTrigger:
-        """The trigger set by a recording without load, with one level."""
+        """The trigger set by a recording without load, with one level.
+
+        Raises
+        ------
+        InvalidQuantity
+            If the recording at rest is empty or not finite, or the step of the converter is not positive.
+        """
         generator = np.random.default_rng(seed)
         time = self.chain.times(self.rest)
         recording = self.record(time, np.zeros(time.size), np.zeros(time.size), noise=noise, generator=generator)

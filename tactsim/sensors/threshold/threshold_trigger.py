@@ -128,7 +128,13 @@ class ThresholdTrigger:
         )
 
     def captured(self, large: Array, small: Array, saturated: Array | None = None) -> TriggerState:
-        """The state after a whole recording, shape (time, ...): what blocks of any length come to."""
+        """The state after a whole recording, shape (time, ...): what blocks of any length come to.
+
+        Raises
+        ------
+        InvalidQuantity
+            If shapes differ or a reading is not finite.
+        """
         return self.advanced(self.start(np.shape(small)[1:]), large, small, saturated)
 
 

@@ -28,17 +28,17 @@ from tactsim.units import format_quantity
 RUN_COLOUR, PRINTED_COLOURS = "#1f4e79", ("#b8540a", "#8a1c7c", "#2e7d32")
 LINE_STYLES = ("C0-", "C1-.", "C2:", "C3--", "C4-", "C5-.", "C6:", "C7--", "C8-", "C9-.")
 POINTS_SHOWN, FEW_POINTS = 40, 12
-"""Points of a curve that are shown, and up to how many those of a line are marked, which is straight between them."""
+"""About how many points of a curve of points are drawn, and up to how many those of a line, straight between them, are marked."""
 MARKERS = ("o", "s", "^", "v", "D")
-LETTERS_OF_TITLE, LETTERS_OF_LEGEND = 11.5, 15.0  # that an inch holds
+LETTERS_OF_TITLE, LETTERS_OF_LEGEND = 11.5, 15.0  # letters in an inch
 LETTERS_BESIDE = 30
-"""In a line beside a panel, which may be one of two."""
+"""Letters in a line beside a panel; there may be two panels, one above the other."""
 SHOWN_REACH = 2.4
 """Radius up to which a section is shown, in radii of the body: farther out the tissue is at rest."""
 
 
 def validation_figure(data: dict[str, Any]) -> bytes:
-    """PNG of a figure; ``form`` says which.
+    """PNG of a figure from its plain data, whose ``form`` says how it is drawn.
 
     Raises
     ------

@@ -13,7 +13,7 @@ from tactsim.validation.comparison import RowOutcome
 from tactsim.validation.figures.forms import label_decades, write_title
 
 WIDTH_OF_CHAPTER = 0.8
-"""Part of the distance of two chapters that the points of one take."""
+"""Width over which the points of a chapter lie, over the distance between two chapters."""
 
 
 def overview(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mapping[str, str]) -> bytes:

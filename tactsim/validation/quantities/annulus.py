@@ -30,6 +30,7 @@ FORMULA_LABELS = {
     "smythe": "Smythe 1951",
 }
 RATIOS_DRAWN, POINTS_DRAWN = 400, 200
+"""Points of a curve over the ratio of the radii, and of one over time or force."""
 
 
 @quantity(unit="1")
@@ -112,7 +113,7 @@ def ratio_effect(
     Parameters
     ----------
     force, over : forces
-    ratios : inner over outer radius, twice
+    ratios : the two ratios of inner over outer radius
     time : time since the force began
     """
 

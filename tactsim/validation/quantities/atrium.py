@@ -23,6 +23,7 @@ FREQUENCIES = np.arange(1.0, 37.0, 5.0)
 """Tested frequencies in Hz, thesis section 4.4."""
 TIMES_LABELS = {"retardation_times": "times in s (as printed)", "viscosities": "viscosities in MPa s (as in 4.6.4)"}
 POINTS = 200
+"""Points of a drawn curve."""
 
 
 def numbered_units(times: str) -> tuple[Array, Array]:
@@ -127,7 +128,7 @@ def atrial_oscillation(
 
 @quantity(unit="1")
 def atrial_time_group(size: Annotated[int, Field(ge=2, le=8)] | None = None, spread: Positive[float] = 0.0261) -> float:
-    """Smallest spread, largest over smallest - 1, of any so many of the eight printed times; or how many lie within a spread.
+    """Smallest spread, largest over smallest less 1, of any ``size`` of the eight printed times; or how many lie within a spread.
 
     Parameters
     ----------

@@ -45,8 +45,9 @@ def catheter_search(
     """How well a tip with so many sensors finds a tissue, over places where its circle of sensors meets it; dimensionless.
 
     ``reached`` is the part of the places at which a sensor lies mostly on the tissue; ``found`` the part of the touches in which
-    the sensor named the hardest does, ``found_where_reached`` the same over those places; ``named`` the part in which the sensor
-    with the highest true threshold is named; ``bias`` the mean relative difference of the reported thresholds from the true ones.
+    the sensor that is named as being on the hardest tissue does, ``found_where_reached`` the same over those places; ``named``
+    the part in which the sensor with the highest true threshold is named; ``bias`` the mean relative difference of the reported
+    thresholds from the true ones.
 
     Parameters
     ----------

@@ -22,7 +22,7 @@ from tactsim.validation.curves import Data, Title, curves_figure, panel, series
 AREA, HEIGHT, MEAN_LOAD, AMPLITUDE = 100e-6, 5e-3, 5e-3, 2.5e-3
 """Specimen and loads, in SI, which the thesis does not print; they cancel in a modulus."""
 PAUSE = 0.3
-"""Between two tests as they are drawn, over the duration of the first."""
+"""Pause that is drawn between two tests, over the duration of the first."""
 
 Cycles = Annotated[float, Field(ge=1, le=1000, description="Recorded cycles, whole or not.")]
 NoisePart = Annotated[float, Field(ge=0, le=0.5, description="Noise of each sample over the amplitude of its oscillation.")]
@@ -81,7 +81,7 @@ def dma_signal_lag(frequency: Positive[Frequency], *, cycles: Cycles = 20.0, noi
 def objective_forms(
     noise: Annotated[float, Field(gt=0, le=0.5)], seeds: Annotated[tuple[NonNegative[int], ...], Field(min_length=1)]
 ) -> float:
-    """How far apart the compliances are that both forms of eq. 4.5.2 choose, over what the squared one leaves of the data.
+    """Distance between the compliances that the two forms of eq. 4.5.2 choose, over the residual of the squared form.
 
     The norms are over elastic and viscous compliance at the eight frequencies; the number is the largest of several sets of data.
 

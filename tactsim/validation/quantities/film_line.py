@@ -34,7 +34,7 @@ def film_drift(
     ----------
     force : constant force on the reference area
     duration : how long it grows
-    since : time from the beginning of the force from which on it counts; the thesis calibrates at 1 s
+    since : time after the force began from which the growth counts; the thesis calibrates at 1 s
     """
     film = Film(composite=composite)
     times = [0.0, since, since + duration] if since else [0.0, duration]
@@ -74,8 +74,8 @@ def joint_film(
     """In SI, of the film that is fitted to the line of 3.1.2 and to the creep of 2.3.1 together.
 
     ``line_error`` is the largest relative error of the resistance against the line from 0.5 to 5 N; ``drift`` the relative growth
-    of the conductance in a minute; ``creep_change`` by which factor less one E0, E1 or mu1 differs most from the printed line at
-    2 to 8 N; the others are fitted constants.
+    of the conductance in a minute; ``creep_change`` the largest factor, less one, by which E0, E1 or mu1 differs from its printed
+    line at 2 to 8 N; the others are fitted constants.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ from tactsim.interfaces import quantity
 
 Printing = Literal["corrected", "as_printed"]
 DIRECTION = 0.6
-"""Share of x in the wave of the potential: any direction but an axis tells d/dx from d/dy."""
+"""Share of x in the wave of the potential: in any direction but those of the axes d/dx differs from d/dy."""
 DEPTHS = np.linspace(0.1, 3.0, 30)
 PLACES = np.linspace(-2.0, 2.0, 21)
 

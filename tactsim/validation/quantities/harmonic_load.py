@@ -30,6 +30,7 @@ RATE_DIGIT = 0.01
 """Last printed digit of a rate in 1/s."""
 TRANSFORM_UNITS = {"static": "N", "numerator": "N/s", "delay": "s", "constant": "1/s^2", "largest": "N"}
 POINTS = 601
+"""Points of a drawn curve."""
 
 
 def units_by_speed(chosen: str) -> GeneralizedKelvin:
@@ -130,11 +131,12 @@ def _of_unit(coefficient: str, values: Array) -> Array:
 
 @quantity(unit="1/s")
 def dynamic_exponent(exponent: Literal["both", "first", "second", "angular_frequency"], as_written: bool = False) -> float:
-    """An exponent or angular frequency of 4.7.2 in 1/s: with both fast rates x1 > x2 multiplied out, x1 + x2 less one of them.
+    """An exponent or the angular frequency of 4.7.2 in 1/s: over exp((x1 + x2) t), with the fast rates x1 > x2, a unit of rate x
+    leaves x1 + x2 - x.
 
     Parameters
     ----------
-    exponent : x1 + x2; what is left beside the unit of rate x1, or x2; 2 pi f
+    exponent : x1 + x2; what the unit of rate x1, or that of x2, leaves of it; 2 pi f
     as_written : whether the sum is rounded to 0.01 1/s and the rate taken off cut there, as in the thesis
     """
     if exponent == "angular_frequency":

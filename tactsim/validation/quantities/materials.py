@@ -25,7 +25,7 @@ Measure = Annotated[Literal["max", "rms"], Field(description="Largest error, or 
 LARGEST_COMPRESSION = 0.6
 """Smallest stretch, an assumption: the height of the specimen of the compression test is not printed."""
 POINTS = 200
-"""Even stretches at which curves are compared."""
+"""Evenly spaced stretches at which curves are compared."""
 SEARCHED = (1.001, 5.0)
 """Stretches between which a change of sign is looked for; the stress is zero at 1."""
 
@@ -94,7 +94,7 @@ def rotated_stress(material: SetName) -> float:
 def compression_curve(name: str) -> UniaxialCurve:
     """The curve that stands for the unpublished data of Fig. 3.8: nominal stress of a material set by 3.1.9 with c11.
 
-    At even stretches from ``LARGEST_COMPRESSION`` to just below 1.
+    At evenly spaced stretches from ``LARGEST_COMPRESSION`` to just below 1.
 
     Raises
     ------
@@ -118,7 +118,7 @@ def fitted(name: str, form: str) -> UniaxialFit:
 
 
 def _stretches(smallest: float) -> Array:
-    """Even stretches up to one spacing below 1, where all stresses vanish."""
+    """Evenly spaced stretches up to one spacing below 1, where all stresses vanish."""
     return np.linspace(smallest, 1.0, POINTS + 1)[:-1]
 
 

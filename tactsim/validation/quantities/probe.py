@@ -24,7 +24,7 @@ DIMENSION_UNITS = {"switches": "1", "left": "1", "right": "1", "pitch": "m", "tr
 LEAN_HEIGHT = 3e-3
 """Height in m above the face at which the lean of a side is measured."""
 STIFFNESS = 200.0
-"""In N/m, of the tissue under the probe; a switch carries as much over what is below it. Only when they begin counts."""
+"""Stiffness in N/m of the tissue under the probe and under a switch. Its size is of no account: only when the forces begin is."""
 
 
 @quantity(unit=lambda dimension: DIMENSION_UNITS[dimension])
@@ -139,6 +139,7 @@ Rates = Annotated[tuple[Positive[Speed], ...], Field(min_length=1, description="
 Depths = Annotated[tuple[Positive[Length], ...], Field(min_length=1, description="Depths that are compared.")]
 TissueNumber = Annotated[int, Field(ge=1, description="Number of the tissue in the case, from 1.")]
 EACH_MM = (1e-3, 2e-3, 3e-3, 4e-3, 5e-3)
+"""Depths in m at which forces are compared unless a table says others."""
 
 
 @quantity(unit="1")

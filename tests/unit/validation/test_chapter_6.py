@@ -201,7 +201,7 @@ def test_a_claim_holds_on_its_side_of_the_limit_only(tmp_path: Path) -> None:
         ("ends: {kind: confirmed, above: 100, why: bare}", "has no unit"),
         ("ends: {kind: confirmed, above: 100 N, why: wrong}", "wrong dimension"),
         ("ends: {kind: not_testable, why: evaluated}", "what is evaluated is testable"),
-        ("ends: {kind: regression_bound, above: 1 N/m, why: not own}", "an own number is a regression"),
+        ("ends: {kind: regression_bound, above: 1 N/m, why: not own}", "ends as a regression"),
         ("ends: {kind: transcribed, why: nothing to read}", "needs what is expected"),
     ],
 )

@@ -30,7 +30,7 @@ def test_a_table_is_read_in_si(tmp_path: Path) -> None:
         (", within: {relative: 0.001, reason: a quotient}", "", "rows.0.ends.within: missing"),
         ("reason: a quotient", "raeson: a quotient", "rows.0.ends.within.raeson: unknown key"),
         ("by: 0.5", "by: 1.001", "is no deviation"),
-        ("from: thesis", "from: own", "an own number is a regression"),
+        ("from: thesis", "from: own", "ends as a regression"),
         ("from: thesis", "from: hearsay", "rows.0.from"),
         ("T053", "53", "rows.0.numbers.0"),
         ("id: known", "id: stiffness", "rows with the same name: stiffness"),

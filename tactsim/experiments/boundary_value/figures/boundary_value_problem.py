@@ -171,8 +171,8 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
 
 
 def _frame_stressed(axis: Axes, stressed: Array, body: Array) -> bool:
-    """Show the neighbourhood of the stressed ones of a body's triangles (n, 3, 2) alone if they are a speck of it, as under a
-    punch, and of what lies beside it a rim; whether so.
+    """Show only the neighbourhood of a body's stressed triangles (n, 3, 2), with a rim, if they are a speck of it, as under a
+    punch; whether that was done.
     """
     if not len(stressed):
         return False

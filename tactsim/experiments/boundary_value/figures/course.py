@@ -12,7 +12,7 @@ from tactsim.results import Result
 from tactsim.units import format_quantity
 
 MARKS = (".-", "s--", "^:", "d-.", "x-", "v--")
-"""Marks and lines of the curves, which print in grey tells apart."""
+"""Marks and lines of the curves, which differ in a grey print, too."""
 ALIKE = 5e-3
 """Curves of a largest magnitude of one that differ by less are drawn as one."""
 LONGEST_LINEAR = 1e3

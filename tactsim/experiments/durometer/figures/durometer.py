@@ -16,7 +16,7 @@ from tactsim.units import format_quantity
 
 TISSUE_COLOUR, SPRING_COLOUR, HERTZ_COLOUR = "#1f4e79", "#b8540a", "#4d9221"
 PAST = 1.01
-"""Depth of the section over that at the reading from which on it is not that of the reading."""
+"""Depth of the section over that at the reading above which the figure says that it is past the reading."""
 ROOM = 1.25
 """The force axis ends at this many times the larger of spring and tissue."""
 

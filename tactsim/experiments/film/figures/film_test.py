@@ -27,7 +27,7 @@ LINE_LENGTH = 140
 MOST_CURVES = 6
 """Forces whose creep is drawn."""
 TICKS_OF_A_DECADE = ((1, 2, 5), (1, 1.5, 2, 3, 4, 5, 7), (1, 1.2, 1.4, 1.6, 1.8, 2, 2.5, 3, 3.5, 4, 4.5, 5, 6, 7, 8, 9))
-"""Of the resistances that are written beside the surface, ever closer."""
+"""Round numbers in a decade that are written as resistances beside the surface, ever closer together."""
 FEWEST_TICKS = 3
 COEFFICIENTS = (
     ("instantaneous", "$E_0$", "#1f4e79", "-"),

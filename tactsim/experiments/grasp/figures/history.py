@@ -19,13 +19,13 @@ from tactsim.plotting.canvas import despined, scale_of
 from tactsim.results import Result
 
 MOST_TAXELS, MOST_NAMED = 9, 18
-"""Taxels whose forces are drawn, but for further ones with the same force, and those that the legend names for each curve."""
+"""Most taxels whose forces are drawn, beside further ones with the same force, and most that the legend names for a curve."""
 ALIKE = 0.01
 """Taxels whose forces differ by less than this part of the largest one share a curve."""
 ROUND_OFF = 1e-6
-"""Part of the largest force of all taxels by which forces differ that are the same."""
+"""Difference of forces that count as the same, over the largest force of all taxels."""
 FROM_ZERO = 0.5
-"""Curves that vary by more than from this part of their largest value to all of it are drawn from zero on."""
+"""An axis whose lowest value is positive and below this part of the highest is drawn from zero on."""
 FORCE_STYLES = {"upper": ("#0072b2", "-", "o"), "lower": ("#d55e00", "--", "s")}
 LUMEN_COLOURS = ("#7a0177", "#009e73", "#000000", "#e69f00")
 TAXEL_COLOURS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000", "#8c6d00", "#7f7f7f")
@@ -136,7 +136,9 @@ def _draw_taxels(axis: Axes, result: Result, along: Array) -> None:
 
 
 def _carrying_most(largest: Mapping[Taxel, float]) -> list[Taxel]:
-    """The taxels with the largest forces in N, and all that carry as much as the last: round-off is not to choose."""
+    """The taxels with the largest forces in N, and all that carry as much as the last of them, so that round-off does not
+    choose.
+    """
     order = sorted(largest, key=lambda taxel: -largest[taxel])
     least = largest[order[:MOST_TAXELS][-1]] - ROUND_OFF * largest[order[0]]
     return [taxel for taxel in order if largest[taxel] >= least]

@@ -36,7 +36,8 @@ MOST_NAMED, NAME = 5, 0.42
 MOST_BORDERED = 100
 """Matrices with more taxels than this have no borders, which would cover the colours."""
 FITTING, LARGEST, SMALLEST = 9.8, 9.0, 3.0
-"""Points of the letters with which a pressure fills a taxel of an inch, of the largest, and of the smallest written."""
+"""Size in points of the letters with which a pressure fills a taxel of an inch, and the largest and smallest size that is
+written."""
 MAP, WIDEST, HIGHEST = 3.05, 7.0, 2.4
 """Longer side in inches of a map beside the other, and width and height within which a map below the other stays."""
 WIDE, LONGEST = 2.0, 2.0
@@ -122,7 +123,7 @@ def draw_plan(axis: Axes, result: Result) -> None:
 
 
 def _digits(value: float, count: int) -> str:
-    """A number with some digits that count, zeros at its end included, and never with an exponent."""
+    """A number to some significant digits, zeros at its end included, and never with an exponent."""
     rounded = float(f"{value:.{count}g}")
     decimals = max(0, count - 1 - math.floor(math.log10(abs(rounded)))) if rounded else 0
     return with_minus(f"{rounded:.{decimals}f}")

@@ -22,7 +22,7 @@ TITLE, WHERE = "Grasp", "; the last accepted step is shown"
 LETTERS = {"upper": "U", "lower": "L"}
 """How the thesis's Fig. 6.3 calls the taxels of each jaw."""
 READ_IN_NEWTONS = 0.01
-"""Least force in N of the taxel that carries most that is written in N."""
+"""Force in N on the taxel that carries most from which on forces are written in N."""
 TAXEL_COLOUR = "#e69f00"
 USUAL_SIDE = 40e-3
 """Longest side in m of a block in whose pictures lengths are drawn as they are given."""
@@ -70,7 +70,7 @@ class LoadedTaxels:
 
     @property
     def largest_pressure(self) -> float:
-        """Largest pressure in Pa on any taxel, and at least something, so that a scale can end there."""
+        """Largest pressure in Pa on any taxel, and never zero, so that a scale can end there."""
         return max(1e-12, *(float(np.max(self.pressures[side])) for side in JAWS))
 
     @property
@@ -86,7 +86,13 @@ class LoadedTaxels:
 
 
 def loaded_taxels(result: Result) -> LoadedTaxels:
-    """The taxels at the last accepted step, or at the moment that the scene names."""
+    """The taxels at the last accepted step, or at the moment that the scene names.
+
+    Raises
+    ------
+    InputError
+        If the result does not hold pressures and forces of taxels as numbers in arrays of one shape.
+    """
     pressures, forces = (dict(zip(JAWS, jaws_at_end(result, name), strict=True)) for name in (TAXEL_PRESSURE, TAXEL_FORCE))
     return LoadedTaxels(result.scene_as(GraspScene), pressures, forces)
 

@@ -41,7 +41,7 @@ TAXEL_SHOWN = 0.55
 LONGER = 1.2
 """An inclusion is cut across the horizontal axis along which it is this much longer than along the other."""
 MOST_NAMED = 12
-"""Taxels along a cut of which each is named; of more, every so many."""
+"""Most taxels along a cut of which each is named; of more, only some at even intervals."""
 INCLUSION_COLOUR = "#000000"
 NAME_LETTER, NAME_APART = 0.011, 6.0
 """Width of a letter of an inclusion's name, with some room, over that of the picture, and distance in points of one beside it."""

@@ -35,7 +35,13 @@ class MatrixReadoutFigures(ResultFigures):
 
 
 def voltages_figure(result: Result) -> Figure:
-    """Upper jaw in the upper row: its voltages over time, and the force of each taxel at the end, read and applied."""
+    """Upper jaw in the upper row: its voltages over time, and the force of each taxel at the end, read and applied.
+
+    Raises
+    ------
+    InputError
+        If the result does not hold voltages and forces of taxels as numbers in arrays of one shape.
+    """
     with result_figure(result, (10.5, 6.4), "Voltages of the matrices") as figure:
         axes: Any = figure.subplots(2, 2, width_ratios=(1.5, 1), sharex="col", sharey="col")
         voltages = jaws_over_time(result, VOLTAGE)

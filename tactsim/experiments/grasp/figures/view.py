@@ -25,6 +25,7 @@ from tactsim.units import format_quantity
 FROM_ABOVE, FROM_BELOW = (0.55, -1.0, 0.5), (0.55, -1.0, -0.5)
 """From the block to the eye."""
 PIXELS = (1100, 850)
+"""Width and height of the rendered view."""
 PLATE, BAR = 0.06, 0.55
 """Thickness of the plates that stand for the jaws and length of the longest bar, over the height of the block."""
 APART = 0.002

@@ -37,7 +37,7 @@ COLUMN, TOP_ROW, LOWER_ROW, HIGHEST = 3.9, 4.1, 1.4, 8.0
 height of the lower row.
 """
 MOST_INTERVALS = 5
-"""Between the ticks of an axis or of the colours."""
+"""Most intervals between the ticks of an axis or of the colours."""
 REGION_DASHES: Any = (0, (1.5, 1.5))
 """Of the line around where an estimated centre may lie."""
 INK, GREY = "#30363d", "#57606a"

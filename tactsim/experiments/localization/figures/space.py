@@ -109,6 +109,8 @@ def _estimated(shown: ViewedGrasp) -> Iterator[Surface]:
 
 
 def _surface(body: Solid, size: Array, colour: str) -> Surface:
-    """The surface of a body, cut just within the faces of the block: of two surfaces in one place either would show in spots."""
+    """The surface of a body, cut just within the faces of the block: two surfaces in one place would show through each other
+    in spots.
+    """
     points, triangles = body.triangles(float(size[2]) / FACETS)
     return Surface(np.clip(points, WITHIN * size, (1 - WITHIN) * size), triangles, colour, smooth=True)

@@ -159,7 +159,13 @@ def _draw_parts(axis: Axes, result: Result, noise: int) -> None:
 
 
 def threshold_signal_figure(result: Result) -> Figure:
-    """Both sensors over time, the large one with the captured threshold, and below the small one with its level (Fig. 3.6b)."""
+    """Both sensors over time, the large one with the captured threshold, and below the small one with its level (Fig. 3.6b).
+
+    Raises
+    ------
+    InputError
+        If the result holds no captured touch.
+    """
     capture = _capture(result)
     result = _around(capture, result)
     time = result.history_values("time")
