@@ -89,11 +89,11 @@ def _draw_forces(axis: Axes, result: Result, along: Array) -> None:
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)
 
 
-def _from_rest(along: Array, force: Array) -> tuple[Array, Array]:
-    """The curve with its beginning, at which the jaws touch without a force, unless the first step is there already."""
+def _from_rest(along: Array, values: Array) -> tuple[Array, Array]:
+    """The curve with its beginning, at which nothing acts yet, unless the first step is there already, as after a jump."""
     if along[0] <= 0.0:
-        return along, force
-    return np.append(0.0, along), np.append(0.0, force)
+        return along, values
+    return np.append(0.0, along), np.append(0.0, values)
 
 
 def _draw_lumen(axis: Axes, result: Result, along: Array) -> None:
@@ -103,7 +103,7 @@ def _draw_lumen(axis: Axes, result: Result, along: Array) -> None:
     scene = result.scene_as(GraspScene)
     for name, pressure, colour in zip(names, pressures, itertools.cycle(LUMEN_COLOURS), strict=False):
         label = scene.named_inclusion(int(name.removeprefix("lumen_pressure").strip("_") or 1))
-        axis.plot(along, factor * pressure, ".-", color=colour, markersize=4, label=label)
+        axis.plot(*_from_rest(along, factor * pressure), ".-", color=colour, markersize=4, label=label)
     axis.set_ylabel(f"pressure in {unit}")
     axis.set_title("pressure in the lumen", loc="left")
     axis.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=7.5)

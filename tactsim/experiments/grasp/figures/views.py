@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -16,7 +15,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Rectangle
 from matplotlib.patheffects import withStroke
-from matplotlib.ticker import FuncFormatter, MaxNLocator
+from matplotlib.ticker import MaxNLocator
 
 from tactsim.array import Array
 from tactsim.experiments.grasp.figures.parts import LETTERS, drawn_millimetre, moment_of, named_lines
@@ -30,7 +29,7 @@ from tactsim.results import Result
 VIEWS = "views.png"
 JAW, NUMBER, ROOM = 1.2, 0.3, 1.0
 """Thickness with which a jaw is drawn, room for the numbers on it, and room around the drawing, in `drawn_millimetre`."""
-WIDTH, SURROUNDINGS = 10.4, 2.4
+WIDTH, SURROUNDINGS = 10.4, 2.2
 """Width in inches of the figure, and height of its title, ticks and scales of colours."""
 COLUMN, TOP_ROW, LOWER_ROW, HIGHEST = 3.9, 4.1, 1.4, 8.0
 """Width in inches of each column of pictures, height of the upper row, which the words beside it need, and least and largest
@@ -62,33 +61,16 @@ class View:
     image : (M, N) in N, row 0 at the top
     away : axis along which it looks
     horizontal, vertical : axes of the picture
-    summed : number of taxels whose forces are added
+    factor, unit : from N to the unit in which all views show forces: 0.9 N in one and 900 mN in the next look unlike
     """
 
     image: Array
     away: int
     horizontal: int
     vertical: int
-    summed: int
     what: str
-
-
-@dataclass(frozen=True)
-class Scales:
-    """Factors and units in which every view shows the sums of forces, and the mean pressures on the taxels that were summed.
-
-    One for all: 0.9 N in one view and 900 mN in the next look like different sizes.
-    """
-
-    force: tuple[float, str]
-    pressure: tuple[float, str]
-
-    @classmethod
-    def of(cls, seen: Sequence[View], grasp: ViewedGrasp) -> Scales:
-        """Those in which the largest values of all views read well."""
-        forces = [float(view.image.max()) for view in seen]
-        pressures = [force / (view.summed * grasp.scene.matrix.area) for view, force in zip(seen, forces, strict=True)]
-        return cls(scale_of(max(forces), "N"), scale_of(max(pressures), "Pa"))
+    factor: float
+    unit: str
 
 
 def colour_table(levels: int) -> list[int]:
@@ -97,15 +79,17 @@ def colour_table(levels: int) -> list[int]:
 
 
 def views_figure(result: Result, grasp: ViewedGrasp) -> Figure:
-    """The top view above the front view, the left view beside it; every picture has its colours, in force and in pressure.
+    """The top view above the front view, the left view beside it; every picture has its colours. Between two arrays of sensors
+    a picture rises to the sum of both (eq. .2.7), so that no colour is the mean pressure on a number of taxels.
 
     The lower middle output of the left view is the sum of row 2 of the lower matrix; section 6.3.1 prints that of row 1 (L1,1 +
     L1,2 + L1,3), while its upper left output is row 3 and Fig. 6.3c has one output per row.
     """
-    pressures, layout = views(grasp.signal, SHAPE), grasp.scene.matrix
-    front = View(pressures.front, 1, 0, 2, layout.rows, "front view: sums over the rows")
-    left = View(pressures.left, 0, 1, 2, layout.columns, "left view: sums over the columns")
-    top = View(pressures.top, 2, 0, 1, len(JAWS), "top view: sums of both jaws")
+    pictures = views(grasp.signal, SHAPE)
+    shown = scale_of(max(float(image.max()) for image in (pictures.front, pictures.left, pictures.top)), "N")
+    front = View(pictures.front, 1, 0, 2, "front view: sums over the rows", *shown)
+    left = View(pictures.left, 0, 1, 2, "left view: sums over the columns", *shown)
+    top = View(pictures.top, 2, 0, 1, "top view: sums of both jaws", *shown)
     x, y, z = 1e3 * grasp.scene.size / drawn_millimetre(grasp.scene.size)
     scale = COLUMN / max(x, y)
     heights = max(TOP_ROW, scale * (y + 2 * ROOM)), float(np.clip(scale * (z + 2 * BEYOND), LOWER_ROW, HIGHEST))
@@ -113,25 +97,22 @@ def views_figure(result: Result, grasp: ViewedGrasp) -> Figure:
     with result_figure(result, size, "Three views of the grasp", below=moment) as figure:
         axes: Any = figure.subplots(2, 2, height_ratios=heights)
         seen = {axes[1, 1]: front, axes[1, 0]: left, axes[0, 1]: top}
-        scales = Scales.of(list(seen.values()), grasp)
         for axis, view in seen.items():
-            _draw(axis, view, grasp, scales)
+            _draw(axis, view, grasp)
         axes[1, 0].invert_xaxis()
         _legend(axes[0, 0], grasp)
     return figure
 
 
-def _draw(axis: Axes, view: View, grasp: ViewedGrasp, scales: Scales) -> None:
-    factor, _ = scales.force
-    norm = Normalize(0.0, max(factor * float(view.image.max()), 1e-12))
+def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
+    """The picture of a view."""
+    norm = Normalize(0.0, max(view.factor * float(view.image.max()), 1e-12))
     extent = _extent(view, grasp)
-    axis.imshow(
-        factor * view.image, cmap=PRESSURE_COLOURS, norm=norm, extent=extent, origin="upper", interpolation="nearest", zorder=1
-    )
+    colours: dict[str, Any] = {"cmap": PRESSURE_COLOURS, "norm": norm}
+    axis.imshow(view.factor * view.image, **colours, extent=extent, origin="upper", interpolation="nearest", zorder=1)
     across, up = (_edges(view, grasp, extent, k) for k in (0, 1))
     rim = [(int(len(edges) > count + 1),) * 2 for edges, count in zip((up, across), view.image.shape, strict=True)]
-    style: dict[str, Any] = {"cmap": PRESSURE_COLOURS, "norm": norm, "rasterized": True, "zorder": 0.9}
-    axis.pcolormesh(across, up, factor * np.pad(view.image, rim, mode="edge"), **style)
+    axis.pcolormesh(across, up, view.factor * np.pad(view.image, rim, mode="edge"), **colours, rasterized=True, zorder=0.9)
     size = 1e3 * grasp.scene.size
     unknown: dict[str, Any] = {"facecolor": "#eceef0", "edgecolor": "#c3c8ce", "hatch": "////", "linewidth": 0.0, "zorder": 0.5}
     axis.add_patch(Rectangle((0, 0), size[view.horizontal], size[view.vertical], **unknown))
@@ -156,24 +137,19 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp, scales: Scales) -> None:
     axis.locator_params(nbins=MOST_INTERVALS)
     axis.set_title(view.what, loc="left")
     despined(axis)
-    _draw_scales(axis, view, grasp, norm, scales)
+    _draw_scale(axis, view, grasp, norm)
 
 
-def _draw_scales(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize, scales: Scales) -> None:
-    """The colours of a view: each sum of forces with the mean pressure on the taxels that were summed."""
-    below = view.away != 2
-    location = "bottom" if below else "right"
-    (force, force_unit), (pressure, pressure_unit) = scales.force, scales.pressure
+def _draw_scale(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize) -> None:
+    """The colours of a view."""
+    location = "right" if view.away == 2 else "bottom"
     bar = axis.figure.colorbar(
         ScalarMappable(norm, PRESSURE_COLOURS), ax=axis, location=location, aspect=30, pad=0.02, shrink=0.85
     )
-    over = pressure / (view.summed * grasp.scene.matrix.area)
-    apart = "\n" if below else "  "
     bar.locator = MaxNLocator(nbins=MOST_INTERVALS)
-    bar.formatter = FuncFormatter(lambda value, _: f"{value:g}{apart}({float(f'{value * over / force:.2g}'):g})")
     bar.update_ticks()
     cut = "\nreadings below 0 count as 0" if (grasp.signal < 0).any() else ""
-    bar.set_label(f"{grasp.meaning} in {force_unit} (mean pressure in {pressure_unit}){cut}")
+    bar.set_label(f"{grasp.meaning} in {view.unit}{cut}")
     bar.outline.set_linewidth(0.5)
 
 
