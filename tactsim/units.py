@@ -286,3 +286,14 @@ Positive = Annotated[Number, Field(gt=0)]
 """``Positive[Length]``: greater than zero."""
 NonNegative = Annotated[Number, Field(ge=0)]
 """``NonNegative[Time]``: zero or greater."""
+
+
+def rough_time(seconds: float) -> str:
+    """A time in s in words, as far as a guess goes: in seconds, minutes or hours.
+
+    >>> rough_time(65.4), rough_time(1500), rough_time(9000)
+    ('65 s', '25 min', '2.5 h')
+    """
+    if seconds < 120:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"

@@ -13,7 +13,7 @@ from tactsim.outside.text import one_line
 from tactsim.progress import Extent
 from tactsim.results import Quantity, Result, Status, StepRecord
 from tactsim.results.quantity import ROUND_OFF, format_values
-from tactsim.units import format_quantity
+from tactsim.units import format_quantity, rough_time
 
 
 def result_report(result: Result, title: str = "") -> str:
@@ -118,7 +118,7 @@ def step_line(record: StepRecord, units: Mapping[str, str], extent: Extent | Non
     reached = f" {share:4.0%}" if extent else ""
     solved = record.newton_iterations > 0 or record.residual > 0
     effort = [f"{record.newton_iterations} iterations, residual {record.residual:.1e}"] if solved else []
-    left = [f"about {_rough(elapsed * (1 / share - 1))} left"] if elapsed >= 1 and 0 < share < 1 else []
+    left = [f"about {rough_time(elapsed * (1 / share - 1))} left"] if elapsed >= 1 and 0 < share < 1 else []
     return "  ".join([f"step {record.step:4d}{reached}", *values, *effort, *left])
 
 
@@ -127,11 +127,6 @@ def _without_round_off(name: str, values: Mapping[str, float]) -> float:
     vector = COMPONENT.fullmatch(name)
     beside = [abs(values.get(f"{vector[1]}_{axis}", 0.0)) for axis in "xyz"] if vector else [0.0]
     return 0.0 if abs(values[name]) < ROUND_OFF * max(beside) else values[name]
-
-
-def _rough(seconds: float) -> str:
-    """A time in s or in minutes, as far as a guess goes."""
-    return f"{seconds:.0f} s" if seconds < 100 else f"{seconds / 60:.0f} min"
 
 
 def _duration(timing: Mapping[str, float]) -> str:

@@ -19,6 +19,7 @@ from tactsim.outside.processes import BROKEN, serve
 from tactsim.outside.worker_pool import Answer, WorkerPool
 from tactsim.results.scene import Scene
 from tactsim.storage.files import replace_file
+from tactsim.units import rough_time
 from tactsim.user_cache import user_cache
 from tactsim.validation.solver_identity import solver_identity
 from tactsim.validation.study import RunOutcome, Study
@@ -99,9 +100,9 @@ class StudyRunner:
             while count < len(waiting):
                 for answer in pool.wait():
                     count, outcome = count + 1, _outcome_of(answer)
-                    left = (monotonic() - begun) / count * (len(waiting) - count)
                     ended = f"{outcome.id}: {outcome.status}, {outcome.seconds:.0f} s"
-                    progress(f"{count}/{len(waiting)}  {ended}; about {max(1, round(left / 60))} min left")
+                    left = rough_time((monotonic() - begun) / count * (len(waiting) - count))
+                    progress(f"{count}/{len(waiting)}  {ended}" + (f"; about {left} left" if count < len(waiting) else ""))
                     yield answer.key, outcome
 
     def _place(self, case_id: str) -> Path:

@@ -21,6 +21,7 @@ from tactsim.dataset.store.writing import write
 from tactsim.dataset.text_counts import LONGEST_WARNING, TextCounts
 from tactsim.errors import StorageError, TactsimError
 from tactsim.outside.text import one_line
+from tactsim.units import rough_time
 
 TASK_SECONDS = 0.5
 """Time in s that a task should take: short samples are handed out many at a time."""
@@ -82,14 +83,14 @@ class Tally:
         now = self.before + self.done + self.failed
         so_far = f"{now} of {self.samples} samples, {self.failed} failed"
         if not self.done + self.failed:
-            return f"{so_far}; computing the first for {_duration(time.monotonic() - self.begin)}"
-        return f"{so_far}, {_per_time(self.rate)}, {_duration((self.samples - now) / self.rate)} left"
+            return f"{so_far}; computing the first for {rough_time(time.monotonic() - self.begin)}"
+        return f"{so_far}, {_per_time(self.rate)}, {rough_time((self.samples - now) / self.rate)} left"
 
     def summary(self) -> list[str]:
         """Lines at the end: counts, rate, the slowest samples, and failures by reason."""
         seconds = time.monotonic() - self.begin
         noun = "sample" if self.done == 1 else "samples"
-        lines = [f"{self.done} {noun} done, {self.failed} failed in {_duration(seconds)} ({_per_time(self.rate)})"]
+        lines = [f"{self.done} {noun} done, {self.failed} failed in {rough_time(seconds)} ({_per_time(self.rate)})"]
         if self.before:
             lines.append(f"{self.before} {'sample was' if self.before == 1 else 'samples were'} there before")
         times = np.concatenate([np.zeros((0, 2)), *self.times])
@@ -108,12 +109,6 @@ class Tally:
 
 def _per_time(rate: float) -> str:
     return f"{rate:.3g} samples/s" if rate >= 1 else f"{3600 * rate:.3g} samples/h"
-
-
-def _duration(seconds: float) -> str:
-    if seconds < 120:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 7200 else f"{seconds / 3600:.1f} h"
 
 
 @dataclass
