@@ -20,7 +20,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.case.loading import load_case
-from tactsim.errors import ConvergenceError
+from tactsim.errors import Collapsed, ConvergenceError
 from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.path import grasp_path
 from tactsim.fem.assembly.body import Body
@@ -40,7 +40,7 @@ SCALES = (1.0, 0.65, 0.4)
 """33 334, 93 660 and 381 170 unknowns. With one layer of cells around the lump, as in the table of docs/theory/fem.md, they were
 28 506, 82 832 and 321 114."""
 REPORTED = (0.65, 0.4, 0.295)
-"""Of the report, which takes forty minutes: the last gives a million unknowns."""
+"""Of the report, which takes some ten minutes: the last gives a million unknowns."""
 MOST_ITERATIONS, MOST_MEMORY, LONGEST, EXPONENT = 60, 24.0, 3600.0, 1.2
 """What is asked: iterations of a system, memory in GB, seconds of the largest, and growth of the time with the unknowns."""
 
@@ -105,7 +105,7 @@ def child(scale: float, settings: Sequence[str], *, factor: bool = False) -> dic
     try:
         for _ in grasp_path(experiment, model).states():
             pass
-    except ConvergenceError as error:
+    except (ConvergenceError, Collapsed) as error:
         sys.stderr.write(f"{error}\n")
         figures["finished"] = 0.0
     return figures | {

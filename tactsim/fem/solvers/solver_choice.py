@@ -38,7 +38,7 @@ more, and the rounding of single precision, 6e-8, is 6e-4 of what 1e-4 leaves as
 
 
 def factor_seconds(size: FactorSize) -> float:
-    """Seconds per system of a body whose factors are of this size, by a factor that is reused, on one core."""
+    """Seconds per system of a body whose factors are of this size, by a factor that is reused."""
     return FACTORS * size.operations / OPERATIONS_PER_SECOND + SOLUTIONS * size.entries / ENTRIES_PER_SECOND
 
 
@@ -48,7 +48,7 @@ def solutions_per_factor(size: FactorSize) -> int:
 
 
 def iteration_seconds(unknowns: float) -> float:
-    """Seconds per system of a body of so many unknowns by the iteration, on one core."""
+    """Seconds per system of a body of so many unknowns by the iteration."""
     return (PREPARATION + STEPS * STEP) * unknowns
 
 
