@@ -26,7 +26,7 @@ from tactsim.cli import (
     console,
 )
 from tactsim.cli.interruption import interruptible
-from tactsim.errors import INTERRUPTED, InputError, StorageError, TactsimError
+from tactsim.errors import INTERRUPTED, InputError, StorageError, TactsimError, suggestion
 from tactsim.outside.defect_place import unless_own
 from tactsim.outside.environment import check_environment
 from tactsim.outside.extras import missing_extra
@@ -74,6 +74,14 @@ class _Parser(argparse.ArgumentParser):
             Always.
         """
         raise InputError(f"{message}\nsee: {self.prog} --help")
+
+    def _check_value(self, action: argparse.Action, value: Any) -> None:
+        """Refuses what is none of the choices, and names a near one, which argparse does from Python 3.14 on."""
+        try:
+            super()._check_value(action, value)
+        except argparse.ArgumentError as error:
+            near = suggestion(str(value), map(str, action.choices or ()))
+            raise argparse.ArgumentError(action, f"{error.message}{near}") from None
 
 
 def _path(text: str) -> Path:

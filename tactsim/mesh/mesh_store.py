@@ -1,4 +1,4 @@
-"""Meshes of blocks, made once and kept: the mesher gives another mesh every time, and results must repeat.
+"""Meshes of blocks, made once and kept: results must repeat, also where the mesher gives another mesh every time.
 
 A mesh is looked up among those shipped with the cases, then in the user's cache, and only then made.
 """
@@ -31,6 +31,8 @@ from tactsim.outside.arrays import read_arrays
 from tactsim.outside.files import opened
 from tactsim.user_cache import user_cache
 
+MAKING = 2
+"""Raised when the mesher is run in another way: meshes that were made in earlier ways are not used any more."""
 _DAMAGE = (OSError, ValueError, LookupError, RuntimeError)
 
 
@@ -81,7 +83,7 @@ def stored_block_mesh(
             if stored is None or stored[1] != entry.content:
                 raise StorageError(f"{folder / entry.file} is not the mesh that the manifest describes; restore the file")
             return StoredMesh(*stored, "shipped")
-    place = (cache or cache_folder()) / f"{key}-{mesher_version()}.npz"
+    place = (cache or cache_folder()) / f"{key}-{mesher_version()}-{MAKING}.npz"
     stored = _read(place, extent, inclusions, key)
     if stored is not None:
         return StoredMesh(*stored, "cache")

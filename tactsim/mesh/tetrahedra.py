@@ -1,7 +1,8 @@
 """Conforming tetrahedra of a block with inclusions by fTetWild, run in a process of its own.
 
-The mesher may hang, crash or exhaust the memory on hostile input, and it gives another mesh every time: a caller is protected
-from the first by the process, from the second by ``mesh_store``.
+The mesher may hang, crash or exhaust the memory on hostile input, from which the process protects a caller. It has no seed: its
+random numbers are fixed where that is possible (``outside.fixed_random_device``); elsewhere it gives another mesh every time, so
+that ``mesh_store`` makes each once.
 
 Source: Hu et al. 2020, ACM Trans. Graph. 39, 117, doi:10.1145/3386569.3392385.
 """
@@ -33,6 +34,7 @@ from tactsim.mesh.fitting.labelling import Surfaces, tidied
 from tactsim.mesh.sizing import at_jaw_edges, background
 from tactsim.mesh.solid import outward
 from tactsim.outside.arrays import read_arrays
+from tactsim.outside.fixed_random_device import fix_random_device
 from tactsim.outside.processes import Ended, run_child
 from tactsim.progress import elapsed_time
 
@@ -41,12 +43,15 @@ ENVELOPE = 0.03
 FACET_SIZE = 0.6
 """Edge length of the triangles given to the mesher, in element sizes."""
 ATTEMPTS = (1.0, 0.8, 0.64, 0.5, 0.4)
-"""Parts of the element size at inclusions that are tried one after the other until a mesh keeps its bounds: the mesher gives
-another mesh every time, and of 33 meshes of spheres of 3 to 4.5 mm two missed the volume by 0.56 %, the others by 0.3 % at
-most. Two spheres of 1.55 mm, smaller than the usual element of 2.6 mm, missed it by 2.9, 3.4, 0.28, 0.13 and 0.05 %."""
+"""Parts of the element size at inclusions that are tried one after the other until a mesh keeps its bounds: of 33 random
+meshes of spheres of 3 to 4.5 mm two missed the volume by 0.56 %, the others by 0.3 % at most. Two spheres of 1.55 mm, smaller
+than the usual element of 2.6 mm, missed it by 2.9, 3.4, 0.28, 0.13 and 0.05 %."""
 REVISION = 2
 """Raised when the same input shall give another mesh."""
 MODULE = "tactsim.mesh.tetrahedra"
+EVERYWHERE = {"GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX512F,-AVX2,-AVX,-FMA,-FMA4"}
+"""Environment in which the functions of the C library take no instructions that some processors lack: with them the last digit of
+what they return is another, and so is the mesh."""
 
 
 def block_mesh(
@@ -54,7 +59,8 @@ def block_mesh(
 ) -> BlockMesh:
     """A block of ``size`` (3,) in m with inclusions, in curved quadratic tetrahedra that conform to every surface.
 
-    The mesher is not deterministic; ``mesh_store.stored_block_mesh`` makes a mesh once.
+    Where the mesher's random numbers cannot be fixed it gives another one every time; ``mesh_store.stored_block_mesh`` makes a
+    mesh once.
 
     Raises
     ------
@@ -147,7 +153,7 @@ def tetrahedra_in_child(request: dict[str, Array], time_limit: float) -> tuple[A
         np.savez(asked, **request)  # type: ignore[arg-type]
         allowed = max(0.0, min(time_limit, seconds_left()))
         with elapsed_time("meshing"):
-            done = run_child(MODULE, [str(asked), str(answer)], time_limit=allowed)
+            done = run_child(MODULE, [str(asked), str(answer)], time_limit=allowed, environment=EVERYWHERE)
         if done.out_of_time:
             check_time()
         if done.code or not answer.exists():
@@ -172,7 +178,9 @@ def _failure(done: Ended, time_limit: float) -> InputError | ConvergenceError:
 def main(asked: str, answer: str) -> None:
     """Answer one request; what the child process does."""
     import pytetwild
+    from pytetwild import PyfTetWildWrapper
 
+    fix_random_device(Path(PyfTetWildWrapper.__file__))
     request: dict[str, Any] = dict(read_arrays(Path(asked).read_bytes(), "the request"))
     request |= {name: float(request[name]) for name in ("edge_length_abs", "epsilon", "stop_energy")}
     corners, simplices = pytetwild.tetrahedralize(**request, vtk_ordering=True, disable_filtering=True, quiet=True)

@@ -38,7 +38,8 @@ GENERAL_LIMITS = (
     "Simulated, not measured: the sensor's film and electronics are models, and tissue is homogeneous but for what is named.",
     "Failed samples, if there are any, are not random: they gather where the tissue is squeezed most.",
     "Numbers repeat on one machine and with the same versions; across machines expect differences of about 1e-8. Meshes of kind "
-    "`tetrahedra` are an exception: another machine makes others, with taxels that differ by up to half a per cent.",
+    "`tetrahedra` repeat only on Linux with x86-64 processors: elsewhere each machine makes its own, whose taxels differ by up "
+    "to half a per cent.",
 )
 MOST_OPTIONS = 10
 """Most options without a sample that the card names."""

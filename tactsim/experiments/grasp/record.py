@@ -109,9 +109,8 @@ class GraspRecord(ContactRecord[GraspModel]):
             except InvalidQuantity as error:  # the simulation is kept: another readout can be made of it
                 self._unread = f"no voltages: {error}; set another readout in a case of kind matrix_readout on this result"
         findings = super().findings()
-        return replace(
-            findings, quantities=findings.quantities or self._unknowns, timing={"meshing": self._sourced.block.seconds}
-        )
+        timing = {} if self._sourced.made_before else {"meshing": self._sourced.block.seconds}
+        return replace(findings, quantities=findings.quantities or self._unknowns, timing=timing)
 
     @property
     def _unknowns(self) -> dict[str, Quantity]:
@@ -146,9 +145,10 @@ class GraspRecord(ContactRecord[GraspModel]):
                 assumptions.append(f"lumen {number}: {reading}, {least} to {most} at {lumen.rate:g} Hz, a raised cosine")
         if any(material.bulk_modulus is None for material in experiment.materials):
             assumptions.append("exactly incompressible materials (section 6.5)")
+        made = f"{'once ' if self._sourced.made_before else ''}made in {block.seconds:.1f} s"
         assumptions.append(
             f"mesh {self._sourced.content} ({self._sourced.origin}): {self.model.space.size} unknowns, "
-            f"least quality {block.quality.minimum:.2g}, made in {block.seconds:.1f} s"
+            f"least quality {block.quality.minimum:.2g}, {made}"
         )
         assumptions += smaller_elements(block)
         if (copies := self.model.problem.copies) > 1:

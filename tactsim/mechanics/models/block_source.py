@@ -37,6 +37,8 @@ class SourcedBlock:
     block: BlockMesh
     content: str
     origin: str
+    made_before: bool = False
+    """Whether it was read, so that the time in which it was made is none of this run's."""
 
     @classmethod
     def of(cls, block: BlockMesh, origin: str) -> Self:
@@ -112,7 +114,7 @@ class TetrahedraSource(SizedSource):
         from tactsim.mesh.mesh_store import stored_block_mesh
 
         stored = stored_block_mesh(size, inclusions, self.settings(size, flats))
-        return SourcedBlock(stored.block, stored.content, stored.origin)
+        return SourcedBlock(stored.block, stored.content, stored.origin, made_before=stored.origin != "made")
 
 
 class LayersSource(SizedSource):

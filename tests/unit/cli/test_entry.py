@@ -133,3 +133,12 @@ def test_each_action_of_data_has_its_own_help(action: str, capsys: pytest.Captur
     assert f"tactsim data {action} " in text.split("example:")[1]
     assert ("--reference" in text) == (action in ("rank", "train", "confusion"))
     assert ("--to" in text) == (action == "export")
+
+
+@pytest.mark.parametrize(("words", "near"), [(["shwo", "x"], "show"), (["data", "chek", "x"], "check"), (["zzz"], "")])
+def test_a_misspelt_command_suggests_the_one_that_was_meant(
+    words: list[str], near: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert main(words) == 2
+    refusal = capsys.readouterr().err
+    assert f"(did you mean {near!r}?)" in refusal if near else "did you mean" not in refusal

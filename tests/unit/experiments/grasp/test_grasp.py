@@ -368,6 +368,15 @@ def test_a_mesh_of_smaller_elements_than_asked_for_says_so(part, monkeypatch):
     assert [words.split()[3] for words in said] == ([] if part == 1 else ["0.64"])
 
 
+@pytest.mark.parametrize("before", [False, True])
+def test_the_time_in_which_a_mesh_was_made_earlier_is_none_of_this_run(before, monkeypatch):
+    sourced = StructuredSource.sourced
+    monkeypatch.setattr(StructuredSource, "sourced", lambda *given: replace(sourced(*given), made_before=before))
+    result = run(mesh={"kind": "structured", "cells": (4, 4, 4)})
+    assert ("meshing" in result.timing) is not before
+    assert ["once made in" in words for words in result.assumptions if "made in" in words] == [before]
+
+
 def test_a_ragged_lump_is_reported():
     lump = {"shape": BALL, "material": "lump"}
     result = run(mesh={"kind": "structured", "cells": (4, 4, 4)}, inclusions=[lump], loading=pressed(RAMP))

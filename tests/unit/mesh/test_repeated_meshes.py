@@ -1,0 +1,64 @@
+"""The mesher, which has no seed, gives the same mesh in every process where its random numbers can be fixed."""
+
+from __future__ import annotations
+
+import platform
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+from lumps import LUMP, SIZE
+
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.mesh_store import content_hash
+from tactsim.mesh.tetrahedra import block_mesh
+from tactsim.outside import fixed_random_device
+from tactsim.outside.fixed_random_device import fix_random_device
+
+ON_THIS_KIND = sys.platform == "linux" and platform.machine() == "x86_64"
+COARSE = BlockMeshSettings(size=8e-3, inclusion_size=4e-3)
+PROGRAM = """
+import hashlib
+from pathlib import Path
+
+import numpy as np
+import pytetwild
+from pytetwild import PyfTetWildWrapper
+from tactsim.outside.fixed_random_device import fix_random_device
+
+if {fix}:
+    assert fix_random_device(Path(PyfTetWildWrapper.__file__))
+corners = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
+quads = np.array([[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]])
+faces = np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]).astype(np.int32)
+nodes, cells = pytetwild.tetrahedralize(corners, faces, edge_length_abs=0.2, quiet=True)[:2]
+print(hashlib.sha256(nodes.tobytes() + cells.tobytes()).hexdigest())
+"""
+
+
+@pytest.mark.skipif(not ON_THIS_KIND, reason="random numbers of libraries are fixed on Linux with x86-64 processors alone")
+def test_the_same_request_gives_the_same_mesh() -> None:
+    first, second = (block_mesh(SIZE, [LUMP], COARSE).mesh for _ in range(2))
+    assert content_hash(first) == content_hash(second)
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not ON_THIS_KIND, reason="random numbers of libraries are fixed on Linux with x86-64 processors alone")
+@pytest.mark.parametrize(("fix", "meshes"), [(True, 1), (False, 4)])
+def test_meshes_of_four_processes_are_alike_only_with_fixed_numbers(fix: bool, meshes: int) -> None:
+    programs = [[sys.executable, "-c", PROGRAM.format(fix=fix)] for _ in range(4)]
+    assert len({subprocess.run(program, capture_output=True, check=True).stdout for program in programs}) == meshes
+
+
+def test_a_library_that_is_not_loaded_or_draws_nothing_is_left_as_it_is(tmp_path: Path) -> None:
+    (tmp_path / "library.so").write_bytes(b"\x7fELF\x02\x01")
+    assert not fix_random_device(tmp_path / "library.so")
+    assert not fix_random_device(Path(sys.modules["_struct"].__file__ or sys.executable))
+
+
+@pytest.mark.parametrize("other", [("darwin", "x86_64"), ("linux", "aarch64")])
+def test_elsewhere_nothing_is_fixed(other: tuple[str, str], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(fixed_random_device.sys, "platform", other[0])
+    monkeypatch.setattr(fixed_random_device.platform, "machine", lambda: other[1])
+    assert not fix_random_device(Path("none"))
