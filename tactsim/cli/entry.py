@@ -76,7 +76,7 @@ class _Parser(argparse.ArgumentParser):
         raise InputError(f"{message}\nsee: {self.prog} --help")
 
     def _check_value(self, action: argparse.Action, value: Any) -> None:
-        """Refuses what is none of the choices, and names a near one, which argparse does from Python 3.14 on."""
+        """Refuses what is none of the choices, and names a near one, as argparse itself can from Python 3.14 on."""
         try:
             super()._check_value(action, value)
         except argparse.ArgumentError as error:

@@ -32,7 +32,8 @@ from tactsim.outside.files import opened
 from tactsim.user_cache import user_cache
 
 MAKING = 2
-"""Raised when the mesher is run in another way: meshes that were made in earlier ways are not used any more."""
+"""Raised when the mesher is run in another way: meshes in a user's cache are made anew, but those shipped stay, which they would
+not if ``tetrahedra.REVISION`` were raised."""
 _DAMAGE = (OSError, ValueError, LookupError, RuntimeError)
 
 

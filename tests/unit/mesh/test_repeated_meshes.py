@@ -16,7 +16,10 @@ from tactsim.mesh.tetrahedra import block_mesh
 from tactsim.outside import fixed_random_device
 from tactsim.outside.fixed_random_device import fix_random_device
 
-ON_THIS_KIND = sys.platform == "linux" and platform.machine() == "x86_64"
+where_numbers_are_fixed = pytest.mark.skipif(
+    not (sys.platform == "linux" and platform.machine() == "x86_64"),
+    reason="random numbers of libraries are fixed on Linux with x86-64 processors alone",
+)
 COARSE = BlockMeshSettings(size=8e-3, inclusion_size=4e-3)
 PROGRAM = """
 import hashlib
@@ -25,26 +28,26 @@ from pathlib import Path
 import numpy as np
 import pytetwild
 from pytetwild import PyfTetWildWrapper
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.tetrahedra import input_surface
 from tactsim.outside.fixed_random_device import fix_random_device
 
 if {fix}:
     assert fix_random_device(Path(PyfTetWildWrapper.__file__))
-corners = np.array([[x, y, z] for x in (0.0, 1.0) for y in (0.0, 1.0) for z in (0.0, 1.0)])
-quads = np.array([[0, 1, 3, 2], [4, 5, 7, 6], [0, 1, 5, 4], [2, 3, 7, 6], [0, 2, 6, 4], [1, 3, 7, 5]])
-faces = np.vstack([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]]).astype(np.int32)
-nodes, cells = pytetwild.tetrahedralize(corners, faces, edge_length_abs=0.2, quiet=True)[:2]
+surface = input_surface(np.ones(3), [], BlockMeshSettings())
+nodes, cells = pytetwild.tetrahedralize(*surface, edge_length_abs=0.2, quiet=True)[:2]
 print(hashlib.sha256(nodes.tobytes() + cells.tobytes()).hexdigest())
 """
 
 
-@pytest.mark.skipif(not ON_THIS_KIND, reason="random numbers of libraries are fixed on Linux with x86-64 processors alone")
+@where_numbers_are_fixed
 def test_the_same_request_gives_the_same_mesh() -> None:
     first, second = (block_mesh(SIZE, [LUMP], COARSE).mesh for _ in range(2))
     assert content_hash(first) == content_hash(second)
 
 
 @pytest.mark.slow
-@pytest.mark.skipif(not ON_THIS_KIND, reason="random numbers of libraries are fixed on Linux with x86-64 processors alone")
+@where_numbers_are_fixed
 @pytest.mark.parametrize(("fix", "meshes"), [(True, 1), (False, 4)])
 def test_meshes_of_four_processes_are_alike_only_with_fixed_numbers(fix: bool, meshes: int, tmp_path: Path) -> None:
     programs = [[sys.executable, "-c", PROGRAM.format(fix=fix)] for _ in range(4)]
