@@ -110,6 +110,8 @@ def overlap(one: list[float], other: list[float]) -> bool:
 def shown(browser: webdriver.Chrome, *arguments: str) -> Iterator[None]:
     """The page of a command, which must say nothing to the console but warnings of the graphics driver."""
     command = [*forked_command(), "show", *arguments, "--web", "--no-browser"]
+    browser.get("about:blank")
+    browser.get_log("browser")  # what a page before this one asked of a server that had ended
     with subprocess.Popen(command, text=True, stdout=subprocess.PIPE) as process:
         try:
             assert process.stdout is not None
