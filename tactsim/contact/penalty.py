@@ -86,6 +86,14 @@ class Regularisation:
             return None
         return replace(self, softest=min(self.softest, needed), largest_pressure=min(self.largest_pressure, needed))
 
+    def stiffer(self) -> Self:
+        """The same for a step in which multipliers overshoot; nothing else without them."""
+        return self
+
+    def as_soft_as(self, before: Regularisation) -> Self:
+        """The same after such a step, with the softness from ``before`` it."""
+        return self
+
     def applied(self, pair: ContactPair, state: ContactState | None = None) -> ContactPair:
         """The pair with this regularisation, given the state that the last solution left at its points."""
         penalty = self.penalty
@@ -122,6 +130,14 @@ class Augmentation(Regularisation):
     def excess(self, penetration: float, elastic_slip: float) -> float:
         """Penetration and elastic slip in m over the largest allowed; at most one if both are small enough."""
         return max(penetration / self.tolerance, elastic_slip / (SLIP_SHARE * self.tolerance))
+
+    def stiffer(self) -> Self:
+        """Half as soft, down to a penetration within the tolerance without multipliers."""
+        return replace(self, softness=max(self.softness / 2, min(self.softness, TARGET_SHARE * self.tolerance)))
+
+    def as_soft_as(self, before: Regularisation) -> Self:
+        """The same with the softness from ``before``."""
+        return replace(self, softness=before.softness) if isinstance(before, Augmentation) else self
 
     def excess_in_words(self, penetration: float, elastic_slip: float) -> str:
         """The larger one of the two in m over what is allowed of it."""

@@ -50,16 +50,9 @@ class ContactState:
         """No contact yet; ``points`` (d, n) in m, ``normals`` (d, n)."""
         return cls(np.zeros(points.shape[1]), np.zeros_like(points), points, normals)
 
-    def augmented(self, now: ContactTraction, share: float = 1.0) -> ContactState:
-        """The same step with the tractions of its last solution as multipliers (augmented Lagrangian).
-
-        The multipliers are ``share`` times the new tractions plus ``1 - share`` times the multipliers before.
-        """
-        pressure, tangential = now.pressure, now.tangential
-        if share < 1:
-            pressure = share * pressure + (1 - share) * self.pressure
-            tangential = share * tangential + (1 - share) * self.tangential
-        return ContactState(pressure, tangential, self.points, now.normal, pressure, self.creep)
+    def augmented(self, now: ContactTraction) -> ContactState:
+        """The same step with the tractions of its last solution as multipliers (augmented Lagrangian)."""
+        return ContactState(now.pressure, now.tangential, self.points, now.normal, now.pressure, self.creep)
 
 
 @dataclass(frozen=True)

@@ -22,7 +22,7 @@ from tactsim.experiments.grasp.path import FIRST_PART
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.contact import contact_equilibrium, guarantee
-from tactsim.mechanics.contact.contact_equilibrium import Action
+from tactsim.mechanics.contact.contact_solution import Action
 from tactsim.mechanics.contact.contact_steps import accepted
 from tactsim.mechanics.contact.guarantee import check_accepted
 from tactsim.mechanics.models.block_model import GraspModel

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +11,7 @@ import pytest
 
 import tactsim as ts
 from tactsim.case import load_case
-from tactsim.contact.traction import ContactState, ContactTraction
+from tactsim.contact.penalty import Augmentation
 from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.paths.loading import PathFollower, StepControl
@@ -145,18 +145,15 @@ def test_a_course_of_too_many_steps_is_refused_before_the_first_one():
         case.experiment.run()
 
 
-def test_forces_found_go_into_the_multipliers_by_a_share():
-    """Two augmentations that overshoot by turns, 2 and 4 about 3, meet at once when half of each is taken."""
-    normal, none = np.array([[0.0], [0.0], [1.0]]), np.zeros((3, 3, 1))
-    before = ContactState(np.array([2.0]), np.array([[1.0], [0.0], [0.0]]), np.zeros((3, 1)), normal)
-    traction = ContactTraction(
-        np.zeros(1), np.array([4.0]), np.array([[0.0], [2.0], [0.0]]), normal, np.zeros((3, 1)), none, none
-    )
-    half, whole = before.augmented(traction, 0.5), before.augmented(traction)
-    assert half.pressure == half.multiplier == 3.0
-    np.testing.assert_array_equal(half.tangential, [[0.5], [1.0], [0.0]])
-    assert whole.pressure is traction.pressure
-    assert whole.tangential is traction.tangential
+def test_a_contact_whose_multipliers_overshoot_becomes_stiffer_for_a_step():
+    usual = Augmentation(tolerance=6e-6, softest=1e3, switch_length=1e-3, softness=30e-6)
+    stiffer = [usual]
+    while stiffer[-1].stiffer() != stiffer[-1]:
+        stiffer.append(stiffer[-1].stiffer())
+    np.testing.assert_allclose([one.softness for one in stiffer], [30e-6, 15e-6, 7.5e-6, 3.75e-6, 3e-6])
+    assert stiffer[-1].as_soft_as(usual) == usual
+    sharp = replace(usual, softness=1e-6)
+    assert sharp.stiffer() == sharp, "a contact that needs no multipliers stays as it is"
 
 
 @pytest.mark.slow

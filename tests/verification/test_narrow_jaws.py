@@ -135,9 +135,9 @@ def test_a_finer_mesh_reads_the_same(verification_record):
     verification_record("taxel forces between narrow jaws", forces, FINE, **known)
 
 
-def drawn_around_the_edges() -> Result:
-    """Jaws of half the block's sides, closed by two and a half times the radius of their edges, at little friction."""
-    jaw = {"width": 30e-3, "depth": 30e-3, "fillet": 1e-3}
+def drawn_around_the_edges(radius: float) -> Result:
+    """Jaws of half the block's sides, closed by 2.5 mm around edges of this radius in m, at little friction."""
+    jaw = {"width": 30e-3, "depth": 30e-3, "fillet": radius}
     return Grasp.model_validate(
         {
             "block": {"size": (60e-3, 60e-3, 30e-3), "tissue": "icf_stable"},
@@ -152,12 +152,14 @@ def drawn_around_the_edges() -> Result:
 
 @pytest.mark.slow
 def test_tissue_is_drawn_around_the_edges_of_jaws(verification_record, monkeypatch):
-    result = drawn_around_the_edges()
+    result = drawn_around_the_edges(1e-3)
     assert result.status == "converged"
     assert np.abs(forces_of(result) - DRAWN).max() < DRAWN_SHARE * DRAWN.max()
     assert result.quantities["reaction_force"].value == pytest.approx(DRAWN_REACTION, rel=CONVERGED)
     known = {"reference": "295 278 unknowns", "kind": "invariance", "mesh": "default, 110 754 unknowns", "tolerance": DRAWN_SHARE}
     verification_record("taxels of jaws around whose edges tissue is drawn", forces_of(result), np.stack([DRAWN, DRAWN]), **known)
+    sharper = 0.5e-3
+    assert drawn_around_the_edges(sharper).status == "converged"
     for module in ("drawn_edges", "path"):  # the mutant: cells and contact of jaws around which nothing is drawn
         monkeypatch.setattr(f"tactsim.experiments.grasp.{module}.drawn_radius", lambda _: math.inf)
-    assert drawn_around_the_edges().status == "failed"
+    assert drawn_around_the_edges(sharper).status == "failed"

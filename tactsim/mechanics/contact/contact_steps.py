@@ -71,9 +71,9 @@ def held(contact: PosedContact, displacement: Array) -> PosedContact:
     return replace(begun_from(contact, now), pair=contact.pair.with_held_limit(now.pressure))
 
 
-def augmented(contact: PosedContact, now: ContactTraction, share: float = 1.0) -> PosedContact:
-    """The contact before the step, with a ``share`` of the forces ``now`` in its multipliers."""
-    return replace(contact, state=contact.state.augmented(now, share))
+def augmented(contact: PosedContact, now: ContactTraction) -> PosedContact:
+    """The contact before the step, with the forces ``now`` as its multipliers."""
+    return replace(contact, state=contact.state.augmented(now))
 
 
 def accepted(contact: PosedContact, displacement: Array) -> PosedContact:

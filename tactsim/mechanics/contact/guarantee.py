@@ -20,7 +20,8 @@ from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.balance import Balance, ExternalForces, NewtonState
 from tactsim.fem.equilibrium.diagnosis import inside_out_in_words
 from tactsim.fem.equilibrium.newton import Problem
-from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium, contact_equilibrium
+from tactsim.mechanics.contact.contact_solution import Action
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.units import format_quantity
 

@@ -25,7 +25,8 @@ from tactsim.interfaces import ContactLaw, Material
 from tactsim.interfaces.solid import FACES
 from tactsim.interfaces.taxel_layout import JAWS, OUTWARD, TaxelLayout
 from tactsim.materials.mirrored import law_mirrors
-from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.contact_solution import Action
 from tactsim.mechanics.contact.first_touch import first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact

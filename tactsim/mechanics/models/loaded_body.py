@@ -21,7 +21,8 @@ from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.solvers.linear import solved
 from tactsim.fem.solvers.solver_choice import solver_for
-from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.contact_solution import Action
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.fields.point_values import cauchy_stress, von_mises

@@ -21,7 +21,8 @@ from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces import ContactLaw, Material, RigidBody
 from tactsim.materials.mirrored import check_in_plane
-from tactsim.mechanics.contact.contact_equilibrium import Action, ContactEquilibrium
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.contact_solution import Action
 from tactsim.mechanics.contact.first_touch import FAR, first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact

@@ -1,0 +1,51 @@
+"""A grasp with friction of tissue that relaxes to almost nothing at once, whose forces follow the rate of the closing."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import Any
+
+import numpy as np
+import pytest
+
+from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.mechanics.contact.contact_solution import Action
+from tactsim.results import Result
+from tactsim.results.result import Status
+
+EVEN = 1e-3
+"""How much of the largest force may be lost from one state to the next under an even ramp: the tolerance in time is 5e-3."""
+FINER = 1e-2
+"""Difference allowed of a force from that of a finer tolerance in time: twice the default one."""
+
+
+def grasped(friction: float, **more: Any) -> Result:
+    """Atrial tissue on few cells, closed by 0.5 mm by each jaw in a second."""
+    return Grasp.model_validate(
+        {
+            "block": {"size": (30e-3, 30e-3, 15e-3), "tissue": "atrial"},
+            "matrix": {"rows": 3, "columns": 3, "pitch": 8e-3, "size": 7e-3},
+            "contact": {"kind": "coulomb", "friction": friction},
+            "mesh": {"kind": "structured", "cells": [3, 3, 2]},
+            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 0.5e-3, "duration": 1.0}]},
+            **more,
+        }
+    ).run()
+
+
+def forces_of(result: Result) -> list[float]:
+    """The closing force in N at each state."""
+    return [step.values["reaction_force"] for step in result.steps]
+
+
+@pytest.mark.parametrize("friction", [0.3, 1.0])
+def test_forces_rise_evenly(friction: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    result = grasped(friction)
+    assert result.status is Status.CONVERGED
+    forces = forces_of(result)
+    assert all(later > before - EVEN * forces[-1] for before, later in pairwise(forces))
+    finer = grasped(friction, time={"tolerance": 1e-3})
+    assert finer.status is Status.CONVERGED
+    np.testing.assert_allclose(forces[-1], forces_of(finer)[-1], rtol=FINER)
+    monkeypatch.setattr(Action, "follows_motion", True)  # the mutant: forces expected to grow as they did per distance
+    assert grasped(friction).status is Status.FAILED
