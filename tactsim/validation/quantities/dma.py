@@ -10,9 +10,10 @@ from pydantic import Field
 
 from tactsim.analytic.atrial import table_4_1
 from tactsim.array import Array
+from tactsim.errors import ConvergenceError
 from tactsim.identification.dma_data import DmaData, synthetic_dma
 from tactsim.identification.dma_least_squares import fit_least_squares
-from tactsim.identification.dma_objective import compliance_parts, objective
+from tactsim.identification.dma_objective import compliance_parts, objective, objective_slopes
 from tactsim.identification.dma_signals import SHOWN_CYCLES, DmaSignals, complex_modulus
 from tactsim.identification.dma_synthetic_signals import DmaMachine, synthetic_signals
 from tactsim.interfaces import drawing, quantity
@@ -23,6 +24,11 @@ AREA, HEIGHT, MEAN_LOAD, AMPLITUDE = 100e-6, 5e-3, 5e-3, 2.5e-3
 """Specimen and loads, in SI, which the thesis does not print; they cancel in a modulus."""
 PAUSE = 0.3
 """Pause that is drawn between two tests, over the duration of the first."""
+
+SLOPE_SOUGHT, SLOPE_LEFT, MOST_SEARCHED = 1e-12, 1e-5, 5000
+"""Slopes of an objective of 4.5.2 by the logarithms of constants, over the objective of no compliance: what the search goes for,
+which round-off ends before, and what may be left; and its steps. With what suffices by default the curves chosen move by 1e-3 of
+their distance from one processor to another."""
 
 Cycles = Annotated[float, Field(ge=1, le=1000, description="Recorded cycles, whole or not.")]
 NoisePart = Annotated[float, Field(ge=0, le=0.5, description="Noise of each sample over the amplitude of its oscillation.")]
@@ -98,7 +104,15 @@ def _apart_over_misfit(data: DmaData) -> float:
     start, size = fit_least_squares(data, weighting="objective").constants.logarithms, float(np.linalg.norm(data.parts))
 
     def chosen(form: str, scale: float) -> Array:
-        search = scipy.optimize.minimize(lambda logarithms: float(objective(logarithms, data, form)) / scale, start)
+        search = scipy.optimize.minimize(
+            lambda logarithms: float(objective(logarithms, data, form)) / scale,
+            start,
+            method="BFGS",
+            jac=lambda logarithms: objective_slopes(logarithms, data, form) / scale,
+            options={"gtol": SLOPE_SOUGHT, "maxiter": MOST_SEARCHED},
+        )
+        if not np.abs(search.jac).max() < SLOPE_LEFT:
+            raise ConvergenceError(f"least {form} objective of 4.5.2: a slope of {np.abs(search.jac).max():.1e} is left")
         return compliance_parts(search.x, data.frequencies)
 
     squared, printed = chosen("squared", size**2), chosen("as_printed", size)

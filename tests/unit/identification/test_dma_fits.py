@@ -14,7 +14,14 @@ from tactsim.identification.dma_data import DmaData, parts_of, synthetic_dma
 from tactsim.identification.dma_determined import determination
 from tactsim.identification.dma_genetic import GeneticSettings, fit_genetic, log_bounds
 from tactsim.identification.dma_least_squares import fit_least_squares
-from tactsim.identification.dma_objective import KelvinConstants, compliance_parts, objective, part_sensitivities
+from tactsim.identification.dma_objective import (
+    FORMS,
+    KelvinConstants,
+    compliance_parts,
+    objective,
+    objective_slopes,
+    part_sensitivities,
+)
 from tactsim.identification.dma_spectrum import estimated_noise
 
 DATA = synthetic_dma(table_4_1(), noise=0.02, seed=1)
@@ -55,6 +62,14 @@ def test_objective_over_a_population_and_in_both_forms():
     assert objective(population, DATA, "as_printed")[3] == pytest.approx(printed, rel=1e-12)
     with pytest.raises(UnknownName):
         objective(population, DATA, "cubed")
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_slopes_of_the_objective_are_its_central_differences(form: str) -> None:
+    logarithms, step = constants().logarithms, 1e-5
+    each = step * np.eye(logarithms.size)
+    differences = (objective(logarithms + each, DATA, form) - objective(logarithms - each, DATA, form)) / (2 * step)
+    np.testing.assert_allclose(objective_slopes(logarithms, DATA, form), differences, rtol=0, atol=1e-7 * abs(differences).max())
 
 
 def test_genetic_search_is_repeatable_within_its_bounds_and_falls():
