@@ -146,7 +146,11 @@ def _by_displacement(
 
     try:
         near = state_near(action.force, action.directions, float(np.ptp(problem.body.space.nodes, axis=0).max()), moved, guess)
-        return None if near is None else _equilibrium(problem, state, near.load, near.unknowns, action, from_guess=True)
+        if near is None:
+            return None
+        both = zip(state.contacts, near.contacts, strict=True)
+        expecting = replace(state, contacts=tuple(replace(contact, growth=there.growth) for contact, there in both))
+        return _equilibrium(problem, expecting, near.load, near.unknowns, action, from_guess=True)
     except ConvergenceError:
         return None
 
