@@ -151,7 +151,7 @@ def test_a_contact_whose_multipliers_overshoot_becomes_stiffer_for_a_step():
     while stiffer[-1].stiffer() != stiffer[-1]:
         stiffer.append(stiffer[-1].stiffer())
     np.testing.assert_allclose([one.softness for one in stiffer], [30e-6, 15e-6, 7.5e-6, 3.75e-6, 3e-6])
-    assert stiffer[-1].as_soft_as(usual) == usual
+    assert stiffer[-1].after_step_from(usual) == usual
     sharp = replace(usual, softness=1e-6)
     assert sharp.stiffer() == sharp, "a contact that needs no multipliers stays as it is"
 

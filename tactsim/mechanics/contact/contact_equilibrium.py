@@ -8,14 +8,14 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.contact.penalty import Regularisation
+from tactsim.contact.penalty import Augmentation, Regularisation
 from tactsim.errors import Collapsed, ConvergenceError, TooShort
 from tactsim.fem.assembly.body import Kinematics
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.mechanics.contact.contact_solution import Action, contact_solution
-from tactsim.mechanics.contact.contact_steps import accepted, augmented, expected, grown, moved_on, touching
+from tactsim.mechanics.contact.contact_steps import accepted, augmented, continued, expected, grown, moved_on, touching
 from tactsim.mechanics.contact.first_force import state_near
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.contact.snap_through import after_snap
@@ -102,7 +102,7 @@ def _softened(
     problem: Problem, state: ContactEquilibrium, load: float, guess: Array, action: Action
 ) -> ContactEquilibrium | None:
     """The state of tissue that relaxes, the contact no stiffer than its present pressure asks; None if it is not found so."""
-    if action.relaxation is None:
+    if action.relaxation is None or state.regularisation.flows:
         return None
     softer = state.regularisation.softened(max(float(contact.state.pressure.max()) for contact in state.contacts))
     if softer is None:
@@ -172,6 +172,23 @@ def _after_snap(problem: Problem, state: ContactEquilibrium, load: float, action
     return replace(beyond, iterations=snapped.iterations + beyond.iterations)
 
 
+def _begun(state: ContactEquilibrium, load: float, action: Action) -> tuple[Regularisation, tuple[PosedContact, ...]]:
+    """How stiff the contact is in a step to a ``load`` in m, and the contacts with the multipliers that it begins with.
+
+    Tissue that flows goes on with the forces that act, and those of other tissue are expected to grow as they did over the last
+    step. Why: where the tissue keeps a hundred thousandth of its stiffness, forces follow the rate of the motion. What they grew
+    by per distance leads Newton astray, and penetration that new multipliers let go is a motion much faster than the jaws':
+    grasps of atrial tissue with friction gave up within milliseconds, or their forces went up and down.
+    """
+    regularisation = state.regularisation
+    if isinstance(regularisation, Augmentation) and regularisation.flows and action.relaxation is not None:
+        regularisation = regularisation.over_step(float(action.relaxation.scale.min()))
+        return regularisation, tuple(continued(contact, regularisation) for contact in state.contacts)
+    if not regularisation.augments:
+        return regularisation, state.contacts
+    return regularisation, tuple(expected(contact, load - state.load) for contact in state.contacts)
+
+
 def _equilibrium(
     problem: Problem,
     state: ContactEquilibrium,
@@ -191,11 +208,10 @@ def _equilibrium(
     ConvergenceError
         If Newton fails, or no penalty keeps the tissue out of the bodies.
     """
-    regularisation, iterations, before, coarse = state.regularisation, 0, state.contacts, 0.0
-    if regularisation.augments and action.follows_motion:
-        coarse = COARSE if any(contact.pair.has_friction for contact in before) else 0.0
-        before = tuple(expected(contact, load - state.load) for contact in before)
-    excess, overshot = np.inf, False
+    regularisation, before = _begun(state, load, action)
+    anticipates = regularisation.augments and not regularisation.flows
+    coarse = COARSE if anticipates and any(contact.pair.has_friction for contact in before) else 0.0
+    iterations, excess, overshot = 0, np.inf, False
     for attempt in range(PENALTY_ATTEMPTS if not regularisation.augments else AUGMENTATIONS):
         contacts = moved_on(before, load - state.load, action.directions, regularisation)
         try:
@@ -219,7 +235,7 @@ def _equilibrium(
         if excess <= 1 and not coarse:
             both = zip(contacts, displacements, state.contacts, strict=True)
             grown_contacts = tuple(grown(accepted(contact, d), start, load - state.load) for contact, d, start in both)
-            kept = regularisation.as_soft_as(state.regularisation)
+            kept = regularisation.after_step_from(state.regularisation)
             return ContactEquilibrium(
                 load, solved.unknowns, iterations, solved.history[-1], grown_contacts, kept, solved.kinematics
             )

@@ -17,12 +17,6 @@ from tactsim.mechanics.contact.posed_contact import PosedContact
 
 STALLED = 0.1
 """Residual below which Newton was near."""
-FOLLOWING = 0.5
-"""Least part of its stiffness that tissue has over a time step, over that at once, for its forces to follow the motion.
-
-Where it relaxes to less, forces follow the rate of the motion, and what they grew by per distance says nothing about the next
-step: forces expected from it, and coarse solutions, lead Newton astray in a contact as stiff as the tissue is at once. Atrial
-tissue, which keeps a hundred thousandth, gave up with them after milliseconds, with forces that went up and down."""
 HELD_ROUNDS = 6
 """How often limits of friction are held before a step counts as failed."""
 
@@ -43,11 +37,6 @@ class Action:
     force: float | None = None
     relaxation: RelaxationStep | None = None
     loads: Sequence[FollowerLoad] = ()
-
-    @property
-    def follows_motion(self) -> bool:
-        """Whether the forces of a step grow with the motion, not with its rate."""
-        return self.relaxation is None or float(self.relaxation.scale.min()) >= FOLLOWING
 
     @property
     def load_control(self) -> PrescribedForce | None:

@@ -59,6 +59,14 @@ def expected(contact: PosedContact, distance: float) -> PosedContact:
     return replace(contact, state=replace(contact.state, pressure=pressure, tangential=tangential, multiplier=pressure))
 
 
+def continued(contact: PosedContact, regularisation: Regularisation) -> PosedContact:
+    """The contact with the multipliers under which its points press as they do, with the penetration that they have."""
+    state, pair = contact.state, regularisation.applied(contact.pair, contact.state)
+    kept = pair.penalty * pair.body.signed_distance(state.points)[0]
+    multiplier = np.where(state.pressure > 0, state.pressure + kept, np.minimum(kept, 0.0))
+    return replace(contact, state=replace(state, multiplier=multiplier))
+
+
 def begun_from(contact: PosedContact, now: ContactTraction) -> PosedContact:
     """The contact for a solution whose first iterate has these forces."""
     return replace(contact, begin=now.iterate())

@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 
+from tactsim.experiments.grasp import path
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.mechanics.contact.contact_solution import Action
 from tactsim.results import Result
 from tactsim.results.result import Status
 
@@ -47,5 +47,5 @@ def test_forces_rise_evenly(friction: float, monkeypatch: pytest.MonkeyPatch) ->
     finer = grasped(friction, time={"tolerance": 1e-3})
     assert finer.status is Status.CONVERGED
     np.testing.assert_allclose(forces[-1], forces_of(finer)[-1], rtol=FINER)
-    monkeypatch.setattr(Action, "follows_motion", True)  # the mutant: forces expected to grow as they did per distance
+    monkeypatch.setattr(path, "FLOWING", 0.0)  # the mutant: forces expected to grow as they did per distance
     assert grasped(friction).status is Status.FAILED
