@@ -426,6 +426,28 @@ def test_more_values_than_fields_are_refused() -> None:
         ts.Sphere((0, 0, 0), center=(1, 1, 1), radius="4 mm")
 
 
+@pytest.mark.parametrize(
+    ("values", "meant"),
+    [
+        ((36e3,), "c10=36000.0 in Pa or c10='36 kPa'"),
+        (("36 kPa",), "c10='36 kPa'"),
+        ((36, 2), "c10=36 in Pa or c10='36 Pa'"),
+    ],
+)
+def test_the_first_value_of_a_material_is_not_taken_for_its_bulk_modulus(values: tuple[Any, ...], meant: str) -> None:
+    """``NeoHookean(36e3)`` said that c10 is missing, and with ``c10`` beside it took it for the bulk modulus."""
+    for named in ({}, {"c10": "1 kPa"}):
+        with pytest.raises(TypeError, match=rf"^NeoHookean takes values by name, .*; did you mean {re.escape(meant)}\?$"):
+            ts.NeoHookean(*values, **named)
+
+
+def test_needed_fields_that_stand_first_may_go_by_position() -> None:
+    soft, loading = ts.NeoHookean(c10="1 kPa"), ts.ClosedForm.example().loading
+    assert ts.ClosedForm(soft, loading=loading).material == soft
+    with pytest.raises(TypeError, match="did you mean material="):
+        ts.ClosedForm(soft, "1 mm", loading=loading)
+
+
 def test_a_changed_copy_is_refused_as_the_value_is_where_it_is_made() -> None:
     press = ts.ClosedForm.example()
     assert press.model_copy(update={"outer_radius": "4 mm"}).outer_radius == 4e-3
