@@ -405,8 +405,9 @@ def test_a_variation_shows_what_varies_and_not_the_whole_experiment(grasp: ts.Gr
 def test_a_place_that_an_experiment_lacks_cannot_vary(grasp: ts.Grasp) -> None:
     radius = ts.uniform("2 mm", "6 mm")
     shape = ts.choice(ts.Sphere((0.02, 0.02, 0.01), "4 mm"), ts.Ellipsoid.example())
-    for place in ("inclusions.0.shape.radius", "loading.pieces.0.to", "block.tissue.c10", "readout.seed", "upper.width"):
-        assert grasp.vary({place: radius}).places == {place: radius}
+    drawn = dict.fromkeys(("inclusions.0.shape.radius", "loading.pieces.0.to", "upper.width"), radius)
+    for place, one in (drawn | {"block.tissue.c10": ts.uniform("2 kPa", "6 kPa"), "readout.seed": {"integer": [1, 9]}}).items():
+        assert grasp.vary({place: one}).places == {place: one}
     assert grasp.vary({"inclusions.0.shape": shape, "inclusions.0.shape.semi_axes.0": radius})
     for place, words in {
         "inclusions.0.shape.raduis": r"^vary: inclusions.0.shape: unknown key 'raduis' \(did you mean 'radius'\?\); allowed:",
@@ -417,6 +418,26 @@ def test_a_place_that_an_experiment_lacks_cannot_vary(grasp: ts.Grasp) -> None:
     }.items():
         with pytest.raises(CaseError, match=words):
             grasp.vary({place: radius})
+
+
+@pytest.mark.parametrize(
+    ("place", "drawn"),
+    [
+        ("inclusions.0.shape.radius", ts.uniform("3 kg", "4 kg")),
+        ("inclusions.0.shape.center.2", ts.choice("3 kPa")),
+        ("upper.width", ts.normal("3 N", "1 N")),
+        ("loading.pieces.0.to", ts.log_uniform("3 s", "4 s")),
+        ("block.size.0", {"range": ["3 V", "4 V", 3]}),
+    ],
+)
+def test_a_quantity_of_another_dimension_cannot_vary_there(grasp: ts.Grasp, place: str, drawn: dict[str, Any]) -> None:
+    """It was taken until the sweep was run."""
+    case = ts.load_case("grasp_lump_icf")
+    for vary, key in ((grasp.vary, place), (case.vary, f"experiment.{place}")):
+        with pytest.raises(CaseError, match=rf"^vary: {place}: '3 .*' has the wrong dimension; expected a length with its unit"):
+            vary({key: drawn})
+    assert grasp.vary({place: ts.uniform(3e-3, 4e-3)}), "numbers are in SI"
+    assert grasp.vary({place: ts.uniform("3 mm", "4 mm")})
 
 
 def test_more_values_than_fields_are_refused() -> None:

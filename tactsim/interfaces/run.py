@@ -110,7 +110,7 @@ class Runnable(KindWithHistory):
         Raises
         ------
         CaseError
-            If it has no such place, or the places are no mapping from key paths.
+            If it has no such place, one of another dimension, or the places are no mapping from key paths.
         """
         check_places(self, places)
         return Variation(self, dict(places))
