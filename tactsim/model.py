@@ -70,13 +70,13 @@ def _by_position(model: type[BaseModel], values: Sequence[Any]) -> dict[str, Any
     Raises
     ------
     TypeError
-        If they are too many, or would fill an optional field that stands before one that is needed, as the bulk modulus of a
-        rubber does before its c10, which is meant.
+        If they are too many, or if the first would fill an optional field though another is needed, as the bulk modulus of a
+        rubber stands before its c10, which is meant.
     """
     fields = _by_key(model)
     needed = [key for key, field in fields.items() if field.is_required()]
     named = dict(zip(fields, values, strict=False))
-    if list(fields)[: len(needed)] != needed and any(key not in needed for key in named):
+    if needed and next(iter(fields)) not in needed:
         meant = ", ".join(_as_keyword(model, key, value) for key, value in zip(needed, values, strict=False))
         raise TypeError(f"{model.__name__} takes values by name, not by position; did you mean {meant}?")
     if len(named) < len(values):
