@@ -225,11 +225,14 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         ]
 
     def _touching(self) -> tuple[TouchingBody, ...]:
-        """The rigid bodies where they first touch."""
-        sides = SIDES[self.problem.dimension]
-        together = zip(self.problem.contacts, self.model.conditions.contacts, strict=True)
+        """The rigid bodies where they first touch, and where they came to."""
+        sides, begin = SIDES[self.problem.dimension], [moved.posed for moved in self.model.conditions.contacts]
+        last = self._kept["last"].state.contact.contacts if "last" in self._kept else begin
         return tuple(
-            TouchingBody(body=one.body, axis=sides[one.side], place=tuple(moved.posed.place.tolist())) for one, moved in together
+            TouchingBody(
+                body=one.body, axis=sides[one.side], place=tuple(first.place.tolist()), reached=tuple(now.place.tolist())
+            )
+            for one, first, now in zip(self.problem.contacts, begin, last, strict=True)
         )
 
     def scene(self) -> BoundaryValueScene:
