@@ -36,12 +36,12 @@ def labels_along(sizes: Mapping[str, int]) -> dict[str, Array]:
 
 
 def labels_of(variables: Iterable[Variable]) -> dict[str, Array]:
-    """The same of the dimensions of variables."""
+    """Labels (n,) along the dimensions of variables that have labels, by their names."""
     return labels_along({name: size for one in variables for name, size in zip(one.dimensions, one.sizes, strict=True)})
 
 
 def add_label(group: zarr.Group, name: str, labels: Array) -> None:
-    """Writes the labels along a dimension."""
+    """Writes the labels (n,) along a dimension."""
     kind: Any = str if labels.dtype.kind == "U" else labels.dtype
     words = f"{name}, counted from 1" if name in COUNTED else name
     attributes: dict[str, Any] = {"units": "1", "long_name": words, "role": "index"}
@@ -51,7 +51,7 @@ def add_label(group: zarr.Group, name: str, labels: Array) -> None:
 
 
 def missing_labels(store: Store, variables: Iterable[Variable]) -> dict[str, Array]:
-    """Labels that a store does not have, as one of an earlier tactsim."""
+    """Labels (n,) that a store does not have, as one of an earlier tactsim, by the names of the dimensions."""
     return {name: one for name, one in labels_of(variables).items() if not os.path.lexists(store.path / name / META)}
 
 
