@@ -159,7 +159,8 @@ _ENTRY, _NUMBER = re.compile(r"(?P<list>\w+)(?P<numbers>(\[\d+\])+)"), re.compil
 
 
 def suggestion(name: str, allowed: Iterable[str]) -> str:
-    """``" (did you mean 'radius'?)"`` if an allowed name is near, those that begin with its words, else an empty string.
+    """``" (did you mean 'radius'?)"`` if an allowed name is near, those that begin with its words or that it begins with, else an
+    empty string; ``center`` and ``centre`` are one word.
 
     An entry of a list as Python writes it, ``center[0]``, is suggested as a key path has it, ``center.0``.
     """
@@ -167,9 +168,17 @@ def suggestion(name: str, allowed: Iterable[str]) -> str:
     entry = _ENTRY.fullmatch(name[:100])
     if entry is not None and entry["list"] in names:
         return f" (did you mean {'.'.join((entry['list'], *_NUMBER.findall(entry['numbers'])))!r}?)"
-    near = difflib.get_close_matches(name[:100], names, n=1, cutoff=0.6)
-    near = near or sorted(other for other in names if name and other.startswith(f"{name}_"))[:MOST_SUGGESTED]
+    spelled, wanted = {_spelled(other): other for other in names}, _spelled(name[:100])
+    near = [spelled[other] for other in difflib.get_close_matches(wanted, spelled, n=1, cutoff=0.6)]
+    longer = (other for word, other in spelled.items() if wanted and word.startswith(f"{wanted}_"))
+    shorter = (other for word, other in spelled.items() if word and wanted.startswith(f"{word}_"))
+    near = near or sorted(longer)[:MOST_SUGGESTED] or sorted(shorter)[:MOST_SUGGESTED]
     return f" (did you mean {' or '.join(map(repr, near))}?)" if near else ""
+
+
+def _spelled(name: str) -> str:
+    """A name in one of two spellings, both of which keys of cases have."""
+    return name.replace("center", "centre")
 
 
 def shown(value: Any) -> str:

@@ -18,7 +18,8 @@ from pydantic.fields import FieldInfo
 from tactsim.errors import InputError, Refused, shown
 from tactsim.field_docstrings import with_fields
 from tactsim.refusals import refusals_of
-from tactsim.units import written
+from tactsim.schema_of_model import unit_at
+from tactsim.units import written, written_quantity
 
 if TYPE_CHECKING:
     from pydantic._internal._model_construction import ModelMetaclass
@@ -63,6 +64,34 @@ class _Fields:
         )
 
 
+def _by_position(model: type[BaseModel], values: Sequence[Any]) -> dict[str, Any]:
+    """The values of the first fields by their keys.
+
+    Raises
+    ------
+    TypeError
+        If they are too many, or if the first would fill an optional field though another is needed, as the bulk modulus of a
+        rubber stands before its c10, which is meant.
+    """
+    fields = _by_key(model)
+    needed = [key for key, field in fields.items() if field.is_required()]
+    named = dict(zip(fields, values, strict=False))
+    if needed and next(iter(fields)) not in needed:
+        meant = ", ".join(_as_keyword(model, key, value) for key, value in zip(needed, values, strict=False))
+        raise TypeError(f"{model.__name__} takes values by name, not by position; did you mean {meant}?")
+    if len(named) < len(values):
+        raise TypeError(f"{model.__name__} takes at most {len(named)} values by position, {len(values)} were given")
+    return named
+
+
+def _as_keyword(model: type[BaseModel], key: str, value: Any) -> str:
+    """A value after its key, a number with a unit as it is without and with it."""
+    unit = unit_at(model, {}, (key,))
+    if not unit or isinstance(value, bool) or not isinstance(value, int | float):
+        return f"{key}={shown(value)}"
+    return f"{key}={value!r} in {unit} or {key}={written_quantity(float(value), unit)!r}"
+
+
 class _MadeInPython(ModelMetaclass):
     """What is wrong with a value made in Python raises the message that a case file has for it; fields may go by position."""
 
@@ -81,9 +110,7 @@ class _MadeInPython(ModelMetaclass):
         type.__dict__["__doc__"].__set__(cls, text)
 
     def __call__(cls, *values: Any, **fields: Any) -> Any:
-        named = dict(zip(_by_key(cls), values, strict=False))  # type: ignore[arg-type]
-        if len(named) < len(values):
-            raise TypeError(f"{cls.__name__} takes at most {len(named)} values by position, {len(values)} were given")
+        named = _by_position(cls, values) if values else {}  # type: ignore[arg-type]
         for name, value in (named | fields).items():
             if isinstance(value, set | frozenset):
                 raise InputError(f"{cls.__name__}: {name}: {shown(value)} has no order; expected a list")

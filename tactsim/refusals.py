@@ -49,9 +49,10 @@ def refusals_of(error: ValidationError, value: Any, model: type[BaseModel]) -> d
 
 def first_fault(error: ValidationError) -> str:
     """The first place that a model refused and why, on one line: of a file that no user writes, where one tells enough."""
-    first = error.errors(include_url=False, include_context=False, include_input=False)[0]
+    first = next(details(error))
     place = one_line(".".join(map(str, first["loc"])), LONGEST_PLACE)
-    return f"{place}: {one_line(first['msg'])}" if place else one_line(first["msg"])
+    reason = one_line(_reason(first))
+    return f"{place}: {reason}" if place else reason
 
 
 def details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Iterator[dict[str, Any]]:
@@ -64,6 +65,12 @@ def details(error: ValidationError, location: tuple[str | int, ...] = ()) -> Ite
             yield from details(inner, place)
         else:
             yield {**detail, "loc": place}
+
+
+def _reason(detail: dict[str, Any]) -> str:
+    """Why a validator refused, without the name of pydantic's error before it."""
+    by_validator = detail["type"] in ("value_error", "assertion_error")
+    return str(detail["ctx"]["error"] if by_validator else detail["msg"])
 
 
 def as_written(value: Any) -> str:
@@ -114,7 +121,7 @@ def _explained(detail: dict[str, Any], path: Path, root: Any, schema: dict[str, 
         place = _tag_path(context, path)
         return place, f"unknown {place[-1]} {as_written(tag)}{suggestion(tag, choices)}; choices: {', '.join(choices)}"
     if error_type in ("value_error", "assertion_error") or error_type not in _PYDANTIC_TYPES:
-        return _blamed_within(path, value, str(context.get("error", detail["msg"])))
+        return _blamed_within(path, value, _reason(detail))
     if error_type == "finite_number":
         return path, f"{as_written(value)} is not finite; expected {_expectation(fragment, schema)}"
     if error_type in ("literal_error", "enum"):

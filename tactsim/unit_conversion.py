@@ -12,6 +12,7 @@ from functools import cache, lru_cache
 from typing import Any
 
 from tactsim.unit_definitions import (
+    OVER_ANOTHER,
     PLAIN,
     PREFIXED,
     PREFIXES,
@@ -117,8 +118,9 @@ def compact(value: float, unit: str, style: str) -> tuple[float, str]:
     if unit in ("", "1", "rad") or (unit == "s" and abs(value) >= 1) or (unit == "Pa" and 1e-3 <= abs(value) < 1):
         return value, unit
     words, inverse = unit.removeprefix("1/").split("/"), unit.startswith("1/")
-    if len(words) <= 2 - inverse and PLAIN.keys() >= set(words):
-        return _prefixed(value, "/".join(PLAIN[word] for word in words), inverse=inverse)
+    shown = OVER_ANOTHER if len(words) == 2 else PLAIN
+    if len(words) <= 2 - inverse and shown.keys() >= set(words):
+        return _prefixed(value, "/".join(shown[word] for word in words), inverse=inverse)
     given = _registry().Quantity(value, unit)
     quantity = given.to_compact()
     if any(word.startswith(RARE_PREFIXES) for word, _ in quantity.unit_items()):

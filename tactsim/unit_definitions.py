@@ -118,6 +118,8 @@ SHOWN_PREFIXES = {-12: "p", -9: "n", -6: "µ", -3: "m", 0: "", 3: "k", 6: "M", 9
 """Exponent of the factor of a prefix in which numbers are shown -> its symbol."""
 PLAIN = {unit: unit for unit in ("m", "s", "A", "Hz", "N", "Pa", "J", "W", "C", "V", "F", "S")} | {"ohm": "Ω"}
 """Units that most quantities have -> how they are shown; a prefix before one of them can be nothing else."""
+OVER_ANOTHER = PLAIN | {"N*m": "N·m"}
+"""Units that are shown as they are over another one: pint makes a moment per length, N*m/m, a force."""
 
 
 @cache

@@ -405,8 +405,9 @@ def test_a_variation_shows_what_varies_and_not_the_whole_experiment(grasp: ts.Gr
 def test_a_place_that_an_experiment_lacks_cannot_vary(grasp: ts.Grasp) -> None:
     radius = ts.uniform("2 mm", "6 mm")
     shape = ts.choice(ts.Sphere((0.02, 0.02, 0.01), "4 mm"), ts.Ellipsoid.example())
-    for place in ("inclusions.0.shape.radius", "loading.pieces.0.to", "block.tissue.c10", "readout.seed", "upper.width"):
-        assert grasp.vary({place: radius}).places == {place: radius}
+    drawn = dict.fromkeys(("inclusions.0.shape.radius", "loading.pieces.0.to", "upper.width"), radius)
+    for place, one in (drawn | {"block.tissue.c10": ts.uniform("2 kPa", "6 kPa"), "readout.seed": {"integer": [1, 9]}}).items():
+        assert grasp.vary({place: one}).places == {place: one}
     assert grasp.vary({"inclusions.0.shape": shape, "inclusions.0.shape.semi_axes.0": radius})
     for place, words in {
         "inclusions.0.shape.raduis": r"^vary: inclusions.0.shape: unknown key 'raduis' \(did you mean 'radius'\?\); allowed:",
@@ -419,11 +420,51 @@ def test_a_place_that_an_experiment_lacks_cannot_vary(grasp: ts.Grasp) -> None:
             grasp.vary({place: radius})
 
 
+@pytest.mark.parametrize(
+    ("place", "drawn"),
+    [
+        ("inclusions.0.shape.radius", ts.uniform("3 kg", "4 kg")),
+        ("inclusions.0.shape.center.2", ts.choice("3 kPa")),
+        ("upper.width", ts.normal("3 N", "1 N")),
+        ("loading.pieces.0.to", ts.log_uniform("3 s", "4 s")),
+        ("block.size.0", {"range": ["3 V", "4 V", 3]}),
+    ],
+)
+def test_a_quantity_of_another_dimension_cannot_vary_there(grasp: ts.Grasp, place: str, drawn: dict[str, Any]) -> None:
+    """It was taken until the sweep was run."""
+    case = ts.load_case("grasp_lump_icf")
+    for vary, key in ((grasp.vary, place), (case.vary, f"experiment.{place}")):
+        with pytest.raises(CaseError, match=rf"^vary: {place}: '3 .*' has the wrong dimension; expected a length with its unit"):
+            vary({key: drawn})
+    assert grasp.vary({place: ts.uniform(3e-3, 4e-3)}), "numbers are in SI"
+    assert grasp.vary({place: ts.uniform("3 mm", "4 mm")})
+
+
 def test_more_values_than_fields_are_refused() -> None:
     with pytest.raises(TypeError, match="at most 2 values by position, 3 were given"):
         ts.Sphere((0, 0, 0), "4 mm", 3)
     with pytest.raises(TypeError, match="center is given by position and by name"):
         ts.Sphere((0, 0, 0), center=(1, 1, 1), radius="4 mm")
+
+
+@pytest.mark.parametrize(
+    ("values", "meant"),
+    [
+        ((36e3,), "c10=36000.0 in Pa or c10='36 kPa'"),
+        (("36 kPa",), "c10='36 kPa'"),
+        ((36, 2), "c10=36 in Pa or c10='36 Pa'"),
+    ],
+)
+def test_the_first_value_of_a_material_is_not_taken_for_its_bulk_modulus(values: tuple[Any, ...], meant: str) -> None:
+    """``NeoHookean(36e3)`` said that c10 is missing, and with ``c10`` beside it took it for the bulk modulus."""
+    for named in ({}, {"c10": "1 kPa"}):
+        with pytest.raises(TypeError, match=rf"^NeoHookean takes values by name, .*; did you mean {re.escape(meant)}\?$"):
+            ts.NeoHookean(*values, **named)
+
+
+def test_a_needed_field_that_stands_first_may_go_by_position() -> None:
+    soft, loading = ts.NeoHookean(c10="1 kPa"), ts.ClosedForm.example().loading
+    assert ts.ClosedForm(soft, loading=loading).material == soft
 
 
 def test_a_changed_copy_is_refused_as_the_value_is_where_it_is_made() -> None:

@@ -59,9 +59,9 @@ torsion.plot()["boundary_value_problem"]
 
 # %%
 # A long cylinder of rubber is squeezed to half its height between smooth plates (ANSYS VM201); read off a curve: 250 and
-# 1400 kN per metre. A quarter of the section is computed.
+# 1400 kN/m. A quarter of the section is computed.
 cylinder = ts.load_case("published_cylinder_between_plates").run()
-print(cylinder["force_100mm"].to("kN"), cylinder["force_200mm"].to("kN"))
+print(cylinder["force_100mm"].to("kN/m"), cylinder["force_200mm"].to("kN/m"))
 cylinder.plot()["boundary_value_problem"]
 
 # %%

@@ -99,7 +99,8 @@ class Case(FrozenModel):
         Raises
         ------
         CaseError
-            If it has no such place, a place is not in the experiment, or the places are no mapping from key paths.
+            If it has no such place or one of another dimension, a place is not in the experiment, or the places are no mapping
+            from key paths.
         """
         check_key_paths(places)
         within = {}

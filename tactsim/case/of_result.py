@@ -10,6 +10,7 @@ from pydantic import ValidationError
 from tactsim.case.model import Case, case_class, experiment_class
 from tactsim.errors import CaseError, StorageError, TactsimError
 from tactsim.outside.text import one_line
+from tactsim.refusals import first_fault
 from tactsim.results.provenance import PROVENANCE_FILE, read_provenance
 
 
@@ -37,5 +38,5 @@ def case_of_result(folder: Path) -> Case:
     try:
         return case_class(experiment_class(kind)).model_validate(resolved)
     except (ValidationError, TactsimError) as error:
-        first = error.errors()[0]["msg"] if isinstance(error, ValidationError) else error
-        raise CaseError(f"{one_line(place)}: this tactsim cannot read the case of the result: {one_line(str(first))}") from None
+        fault = first_fault(error) if isinstance(error, ValidationError) else one_line(error)
+        raise CaseError(f"{one_line(place)}: this tactsim cannot read the case of the result: {fault}") from None

@@ -153,6 +153,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
     """Exit code of one case."""
     from tactsim.case.inputs import check_inputs
     from tactsim.case.loading import read_document, validated_case
+    from tactsim.case.placing import placed
     from tactsim.outside.library_warnings import collected_warnings
     from tactsim.progress import noted_by
     from tactsim.results.folder import claimed
@@ -169,7 +170,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
             if progress is not None:
                 for doubt in case.experiment.doubts():
                     console.note(f"warning: {doubt}")
-            with collected_warnings() as raised, noted_by(progress and console.note):
+            with collected_warnings() as raised, noted_by(progress and console.note), placed(case, document, place):
                 try:
                     result = case.experiment.run(progress, time_limit=seconds)
                 except KeyboardInterrupt:

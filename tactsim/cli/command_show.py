@@ -119,13 +119,16 @@ def _case_of(named: Path) -> Path | None:
 def _show_case(path: Path, save: Path | None, named: Path) -> int:
     """What a case would compute, in words and as a picture of its bodies at rest."""
     from tactsim.case.loading import SWEEPS, read_document, validated_case
+    from tactsim.case.placing import placed
     from tactsim.cli.figures.result_figures import form_of
     from tactsim.results import SolverReport
 
     form, read = None if save is None else form_of(save), read_document(path)
     if str(read[0].value.get("schema")).startswith(SWEEPS):
         return _show_sweep(path, save, form, named)
-    result = validated_case(*read).at_rest()
+    case = validated_case(*read)
+    with placed(case, *read):
+        result = case.at_rest()
     console.out(one_line(result.title or path.stem))
     console.out(f"  {result.kind}, {result.reason}")
     if isinstance(report := getattr(result.scene, "solver", None), SolverReport):

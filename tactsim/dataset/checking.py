@@ -17,6 +17,7 @@ from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, WORDS, differences, earlier_words
 from tactsim.dataset.store.blocks import JOURNAL
 from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
+from tactsim.dataset.store.labels import label_faults, labels_of
 from tactsim.dataset.store.opening import ARRAYS, Store
 from tactsim.dataset.store.verifying import SHOWN, ChunkRead, computed_chunks, lost_status, waiting_in_journal
 from tactsim.errors import StorageError
@@ -72,6 +73,7 @@ def check(path: str | Path) -> Checked:
     same_code = store.attributes["codes"][-1] == code_identity()
     findings = [*_arrays(store, layout.variables, sweep.samples), *_wording(store, layout.variables, sweep, same_code)]
     findings += [*_attributes(store, sweep, layout), *_consolidated(store), *_files(store, layout.variables)]
+    findings += [Finding("description", (), words) for words in label_faults(store, layout.variables)]
     notes = tuple(_notes(store, same_code, layout.variables, sweep))
     if any(finding.kind in ("missing", "form") for finding in findings):
         return Checked({}, tuple(findings), notes)
@@ -145,7 +147,8 @@ def _consolidated(store: Store) -> Iterator[Finding]:
 
 def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
     """Files that tactsim did not write, that a killed run left, or that are no longer as tactsim wrote them."""
-    names = [variable.name for variable in variables]
+    variables = list(variables)
+    names = [*(variable.name for variable in variables), *labels_of(variables)]
     torn = sum(is_torn(name, names) for name in walked(store.path))
     if torn:
         yield Finding(

@@ -11,10 +11,11 @@ from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal, Self, TypeVar, final
+from typing import Any, Literal, Self, TypeVar, cast, final
 
 from tactsim.deadline import allowed_seconds, check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished, shown
+from tactsim.interfaces.doubts import doubts_beside
 from tactsim.interfaces.history_units import KindWithHistory
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
@@ -109,7 +110,7 @@ class Runnable(KindWithHistory):
         Raises
         ------
         CaseError
-            If it has no such place, or the places are no mapping from key paths.
+            If it has no such place, one of another dimension, or the places are no mapping from key paths.
         """
         check_places(self, places)
         return Variation(self, dict(places))
@@ -151,8 +152,7 @@ class Runnable(KindWithHistory):
         InputError
             If the kind has no body with a mesh, or something that the experiment names cannot be used.
         """
-        meshed = "indentations, grasps and boundary value problems have a body with a mesh"
-        raise InputError(f"{self.kind}: nothing to show at rest; {meshed}")
+        raise InputError(f"{self.kind}: nothing to show at rest; indentations, grasps and boundary value problems have a mesh")
 
     @final
     def at_rest(self) -> Result:
@@ -163,7 +163,8 @@ class Runnable(KindWithHistory):
         InputError
             As `unloaded`.
         """
-        return _result(self, self.unloaded().ended(Status.INTERRUPTED, "at rest; nothing is computed"), {})
+        with doubts_beside(self.doubts):
+            return _result(self, self.unloaded().ended(Status.INTERRUPTED, "at rest; nothing is computed"), {})
 
     @final
     def run(self, progress: Progress | Literal["bar"] | None = "bar", *, time_limit: float | str | None = None) -> Result:
@@ -202,7 +203,7 @@ def run_experiment(experiment: Runnable, progress: Progress | None, seconds: flo
     started = time.perf_counter()
     COMPILATION.of_another_run()
     try:
-        with time_limit(seconds):
+        with time_limit(seconds), doubts_beside(experiment.doubts):
             course = _course(experiment)
             setup = time.perf_counter() - started
             early = _ended_early(course, progress)
@@ -288,8 +289,7 @@ def returned_by(steps: Generator[StepRecord, None, Made]) -> Made:
             try:
                 next(steps)
             except StopIteration as end:
-                value: Made = end.value
-                return value
+                return cast(Made, end.value)
 
 
 @contextmanager

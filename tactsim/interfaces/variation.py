@@ -8,7 +8,8 @@ from typing import Any
 
 from tactsim.errors import CaseError, InvalidQuantity, shown, suggestion
 from tactsim.model import FrozenModel, plain
-from tactsim.units import written
+from tactsim.schema_of_model import unit_at
+from tactsim.units import parse_quantity, written
 
 EXAMPLE = "{'key.path': tactsim.uniform(low, high)}"
 """What `vary` takes, as messages show it."""
@@ -96,19 +97,21 @@ def choice(*options: Any, weights: Iterable[float] | None = None) -> dict[str, A
 
 
 def check_places(experiment: FrozenModel, places: Mapping[str, Any]) -> None:
-    """Check that an experiment has the places that vary; what lies in a part that itself varies is left to the sweep.
+    """Check that an experiment has the places that vary, and that they take the units of what is drawn; what lies in a part that
+    itself varies is left to the sweep, as are ranges and options.
 
     Raises
     ------
     CaseError
-        If they are no mapping of key paths, or with the key path, the key that is unknown, and those that are known.
+        If they are no mapping of key paths, or with the key path, the key that is unknown, and those that are known, or the
+        quantity whose dimension is wrong.
     """
     check_key_paths(places)
-    for place in places:
+    for place, distribution in places.items():
         keys = place.split(".")
         outer = {".".join(keys[:length]) for length in range(1, len(keys))}
         if not places.keys() & (outer | {f"{part}.kind" for part in outer}):
-            _check_place(experiment, keys)
+            _check_unit(place, distribution, _unit_at(experiment, keys))
 
 
 def check_key_paths(places: object) -> None:
@@ -126,14 +129,34 @@ def check_key_paths(places: object) -> None:
             raise CaseError(f"vary: {shown(place)} is not a key path, which is a text; expected {EXAMPLE}")
 
 
-def _check_place(value: Any, keys: list[str]) -> None:
+def _check_unit(place: str, distribution: Any, unit: str) -> None:
+    """Check that drawn quantities are of a unit; an empty one is that of a place without unit, or whose unit is not known."""
+    if not unit or not isinstance(distribution, dict):
+        return
+    for entry in (one for entries in distribution.values() if isinstance(entries, list) for one in entries):
+        if isinstance(entry, str) and entry.lstrip()[:1] in tuple("+-.0123456789"):  # no name, which a place may take as well
+            try:
+                parse_quantity(entry, unit)
+            except InvalidQuantity as error:
+                raise CaseError(f"vary: {place}: {error}") from None
+
+
+def _unit_at(value: Any, keys: list[str]) -> str:
+    """The SI unit of a place of an experiment, empty where there is none or it is not known yet.
+
+    Raises
+    ------
+    CaseError
+        If there is no such place.
+    """
+    owner, above = value, 0
     for number, key in enumerate(keys):
         where = ".".join(("vary", *keys[:number])).replace("vary.", "vary: ", 1)
         if isinstance(value, FrozenModel):
             entries = {field.alias or name: getattr(value, name) for name, field in type(value).model_fields.items()}
             if key not in entries:
                 raise CaseError(f"{where}: unknown key {key!r}{suggestion(key, entries)}; allowed: {', '.join(entries)}")
-            value = entries[key]
+            owner, above, value = value, number, entries[key]
         elif isinstance(value, list | tuple):
             if key not in (allowed := [str(index) for index in range(len(value))]):
                 raise CaseError(f"{where}: a list without an entry {key!r}; entries: {', '.join(allowed) or 'none'}")
@@ -141,9 +164,10 @@ def _check_place(value: Any, keys: list[str]) -> None:
         elif isinstance(value, dict) and key in value:
             value = value[key]
         elif value is None or isinstance(value, dict):
-            return  # what a sweep makes there is checked with its first sample
+            return ""  # what a sweep makes there is checked with its first sample
         else:
             raise CaseError(f"{where}: {shown(value)} has no entry {key!r}")
+    return unit_at(type(owner), {}, tuple(int(key) if key.isdecimal() else key for key in keys[above:]))
 
 
 def _checked(distribution: dict[str, Any]) -> dict[str, Any]:

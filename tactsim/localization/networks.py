@@ -17,6 +17,7 @@ from tactsim.interfaces.taxel_layout import TaxelLayout
 from tactsim.outside.arrays import LARGEST_FOREIGN, read_arrays
 from tactsim.outside.files import opened
 from tactsim.outside.text import one_line
+from tactsim.refusals import first_fault
 from tactsim.units import format_quantity
 
 SCHEMA = "tactsim/learned/1"
@@ -165,7 +166,8 @@ def read_weights(path: str | Path) -> LearnedWeights:
             **numbers,
         )
     except (ValueError, LookupError, TypeError, OverflowError, ValidationError) as error:
-        reason = f"does not hold the weights of a learned estimator: {one_line(error, 120)}"
+        fault = first_fault(error) if isinstance(error, ValidationError) else error
+        reason = f"does not hold the weights of a learned estimator: {one_line(fault, 120)}"
         raise StorageError(f"{one_line(path)} {reason}; {TRAINED}") from None
     if not weights.places or not all(np.isfinite(numbers[name]).all() for name in NUMBERS):
         raise StorageError(f"{path} holds no networks or numbers that are not finite; train the estimator anew")

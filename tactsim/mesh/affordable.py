@@ -43,7 +43,7 @@ def check_along(count: float, key: str) -> None:
         With the number and what is allowed.
     """
     if not count <= MOST_ALONG:
-        raise InputError(f"{key}: {count:.3g} cells along a side or more; allowed: up to {MOST_ALONG}; take a larger size")
+        raise InputError(f"{key}: {count:.4g} cells along a side or more; allowed: up to {MOST_ALONG}; take a larger size")
 
 
 def unknowns_of_cells(cells: Sequence[int]) -> int:

@@ -12,6 +12,7 @@ from tactsim.errors import StorageError
 from tactsim.model import FrozenModel
 from tactsim.outside.files import opened
 from tactsim.outside.json_text import read_json
+from tactsim.refusals import first_fault
 
 MANIFEST = "manifest.json"
 
@@ -68,7 +69,8 @@ def _entries(place: Path, version: tuple[int, int]) -> tuple[ManifestEntry, ...]
     try:
         return _ENTRIES.validate_python(read_json(opened(place, "description").text(), str(place)))
     except (OSError, ValidationError, StorageError, ValueError) as error:
-        raise StorageError(f"cannot read {place}: {error}") from None
+        fault = first_fault(error) if isinstance(error, ValidationError) else error
+        raise StorageError(f"cannot read {place}: {fault}") from None
 
 
 def add_entry(folder: Path, entry: ManifestEntry) -> None:

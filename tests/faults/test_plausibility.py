@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
+from tactsim.cli import main
 from tactsim.errors import InvalidQuantity
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.warnings import unlikely
@@ -13,6 +16,7 @@ from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.materials.polynomial import Polynomial
 from tactsim.mechanics.outcome.plausibility import oddities
+from tactsim.shipped import CASES
 from tactsim.units import parse_quantity
 
 
@@ -138,3 +142,25 @@ def test_a_unit_that_nobody_measures_tissue_in_is_refused(text):
 )
 def test_units_of_laboratories_are_read(text, unit, value):
     assert parse_quantity(text, unit) == pytest.approx(value, rel=1e-5)
+
+
+def test_a_metre_for_a_millimetre_is_refused_with_the_key_its_line_and_what_is_usual(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The mesh of a block of 30 m was refused without the block, the file and the line."""
+    text = (CASES / "grasp_plain.yaml").read_text(encoding="utf-8")
+    case = tmp_path / "case.yaml"
+    case.write_text(text.replace("40 mm, 40 mm, 20 mm", "30 m, 40 mm, 20 mm"), encoding="utf-8")
+    lines = case.read_text(encoding="utf-8").splitlines()
+    block, mesh = (next(k for k, line in enumerate(lines, 1) if line.strip().startswith(f"{key}:")) for key in ("block", "mesh"))
+    long = "experiment.block.size along x is 30 m; usual for tissue: 20 µm to 500 mm: is its unit right?"
+    for command in (["show", str(case)], ["run", str(case), "--out", str(tmp_path / "out")]):
+        assert main(command) == 2
+        refused, *doubts = capsys.readouterr().err.splitlines()
+        assert refused.startswith(f"error: {case}:{mesh}: experiment.mesh.size, ")
+        assert "1001 cells along a side or more" in refused
+        assert doubts[0] == f"{case}:{block}: {long}"
+        assert all(doubt.startswith(f"{case}:{block}: experiment.block.size") for doubt in doubts), "of what the case says alone"
+    option = "experiment.block.size=[30 m, 40 mm, 20 mm]"
+    assert main(["run", "grasp_plain", "--set", option, "--out", str(tmp_path / "out")]) == 2
+    assert f"--set experiment.block.size: {long}" in capsys.readouterr().err

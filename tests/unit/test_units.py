@@ -88,6 +88,7 @@ def test_values_are_printed_to_be_read() -> None:
     assert format_quantity(3.0854, "N m") == "3.0854 N·m"
     assert format_quantity(0.004, "N m") == "4 mN·m"
     assert compact_unit(0.004, "N m") == "mN·m", "as beside a number"
+    assert format_quantity(4e3, "N*m/m") == "4 kN·m/m", "a moment of a metre of depth is no force"
     assert compact_unit(3e6, "Pa s/N") == format_quantity(3e6, "Pa s/N").split()[1] == "MPa·s/N"
     assert conversion("Pa s/N", "MPa·s/N") == 1e-6
 

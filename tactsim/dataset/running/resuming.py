@@ -18,9 +18,10 @@ from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import FAILED, META, earlier_words, wrong_arrays
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.files import refuse_links, remove_torn
+from tactsim.dataset.store.labels import labels_of
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import damaged_samples, mark_pending
-from tactsim.dataset.store.writing import consolidate, create, resize, restore, set_attributes
+from tactsim.dataset.store.writing import consolidate, create, resize, restore, restore_labels, set_attributes
 from tactsim.deadline import TOO_LONG
 from tactsim.errors import CaseError, StorageError
 from tactsim.outside.text import one_line
@@ -122,15 +123,17 @@ def _put_right(sweep: Sweep, layout: Layout, store: Store) -> Store:
             f"has {present.shape[0]} samples, {sweep.samples} would lose some; ask for at least as many, or choose another folder"
         )
         raise StorageError(f"the data set {one_line(store.path)} {fewer}")
-    remove_torn(store.path, {*store.described, *(variable.name for variable in layout.variables)})
+    names = {*store.described, *(variable.name for variable in layout.variables), *labels_of(layout.variables)}
+    remove_torn(store.path, names)
     restored = restore(store, layout.variables, sweep.samples)
+    labelled = restore_labels(store, layout.variables)
     lengths = {array.shape[0] for array in store.described.values()}
     if restored or lengths != {sweep.samples}:
         store = Store.open(store.path, writing=True)
         resize(store, sweep.samples, layout.variables)
     if store.attributes["sweep"] != sweep.text:
         set_attributes(store, **attributes_of_sweep(sweep))
-    elif restored or lengths != {sweep.samples} or store.ungathered:
+    elif restored or labelled or lengths != {sweep.samples} or store.ungathered:
         consolidate(store.path)
     return Store.open(store.path, writing=True)
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from tactsim.dataset.store.arrays import CHUNK_SAMPLES, LARGEST_CHUNK, META
 from tactsim.dataset.store.blocks import Block
+from tactsim.dataset.store.labels import add_label, labels_of, missing_labels
 from tactsim.dataset.store.opening import ARRAYS, STORE_SCHEMA, Store, reading
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
@@ -42,6 +43,8 @@ def create(path: Path, variables: Sequence[Variable], samples: int, attributes: 
         group = zarr.open_group(place, mode="w-", zarr_format=3, attributes=described)
         for variable in variables:
             _add(group, variable, samples, per_chunk)
+        for name, labels in labels_of(variables).items():
+            add_label(group, name, labels)
         consolidate(place)
     return Store.open(path, writing=True)
 
@@ -109,6 +112,22 @@ def restore(store: Store, variables: Sequence[Variable], samples: int) -> list[s
             _add(store.group, variable, length, per_chunk)
             sync(store.path / variable.name / META)
     return [variable.name for variable in gone]
+
+
+def restore_labels(store: Store, variables: Sequence[Variable]) -> list[str]:
+    """Writes the labels along dimensions that a store does not have; returns the names of the dimensions.
+
+    Raises
+    ------
+    StorageError
+        If one cannot be written.
+    """
+    missing = missing_labels(store, variables)
+    with naming(store.path):
+        for name, labels in missing.items():
+            add_label(store.group, name, labels)
+            sync(store.path / name / META)
+    return list(missing)
 
 
 def write(store: Store, block: Block, variables: Sequence[Variable]) -> None:

@@ -124,7 +124,7 @@ def sample_case(store: str | Path, sample: int) -> Case:
 
 
 def dataset_of(store: Store) -> xarray.Dataset:
-    """The store by xarray, without Dask.
+    """The store by xarray, without Dask; jaws, rows, columns and axes have labels, in a store of an earlier tactsim too.
 
     Raises
     ------
@@ -133,6 +133,7 @@ def dataset_of(store: Store) -> xarray.Dataset:
     """
     import xarray
 
+    from tactsim.dataset.store.labels import labels_along
     from tactsim.dataset.store.opening import reading
 
     lengths = {name: array.shape[0] for name, array in store.described.items()}
@@ -140,7 +141,8 @@ def dataset_of(store: Store) -> xarray.Dataset:
         reason = f"its arrays have {min(lengths.values())} to {max(lengths.values())} samples"
         raise StorageError(f"{store.path} cannot be opened: {reason}: a run was killed while it made room; go on with --resume")
     with reading(store.path):
-        return xarray.open_zarr(store.group.store, chunks=None, consolidated=False)
+        whole = xarray.open_zarr(store.group.store, chunks=None, consolidated=False)
+    return whole.assign_coords(labels_along({str(name): size for name, size in whole.sizes.items()}))
 
 
 def names_in(given: str | Iterable[str], what: str) -> list[str]:

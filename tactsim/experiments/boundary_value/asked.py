@@ -7,12 +7,15 @@ from typing import Annotated, ClassVar, Literal
 
 from pydantic import Field
 
+from tactsim.experiments.boundary_value.geometry import Dimension
 from tactsim.model import FrozenModel
 from tactsim.units import Length, NonNegative, Time, format_quantity
 
 CARTESIAN = {"xx": (0, 0), "yy": (1, 1), "zz": (2, 2), "xy": (0, 1), "yz": (1, 2), "xz": (0, 2)}
 AXISYMMETRIC = {"rr": (0, 0), "radial": (0, 0), "zz": (1, 1), "rz": (0, 1), "hoop": (2, 2)}
 """Entries of the stress by the component's name; on an axisymmetric body its rows are r, z and hoop."""
+PER_DEPTH = {"N": "N/m", "N*m": "N*m/m", "J": "J/m", "m^3": "m^2"}
+"""Unit of what a whole body has -> that of a metre of the depth of one in plane strain."""
 StressComponent = Literal["xx", "yy", "zz", "xy", "yz", "xz", "rr", "rz", "radial", "hoop", "von_mises", "mean"]
 
 
@@ -96,7 +99,7 @@ class AskedForce(Asked):
     """Along which axis."""
 
     unit: ClassVar[str] = "N"
-    """Newton; per metre of depth in plane strain."""
+    """Newton; N/m in plane strain."""
 
     @property
     def words(self) -> str:
@@ -115,7 +118,7 @@ class AskedTorque(Asked):
     """Name of the face."""
 
     unit: ClassVar[str] = "N*m"
-    """Newton metre; per metre of depth in plane strain."""
+    """Newton metre; N*m/m in plane strain."""
 
     @property
     def words(self) -> str:
@@ -133,7 +136,7 @@ class AskedContactForce(Asked):
     """Along which axis."""
 
     unit: ClassVar[str] = "N"
-    """Newton; per metre of depth in plane strain."""
+    """Newton; N/m in plane strain."""
 
     @property
     def words(self) -> str:
@@ -150,7 +153,7 @@ class AskedEnergy(Asked):
     kind: Literal["energy"]
 
     unit: ClassVar[str] = "J"
-    """Joule; per metre of depth in plane strain."""
+    """Joule; J/m in plane strain."""
 
     @property
     def words(self) -> str:
@@ -164,7 +167,7 @@ class AskedVolume(Asked):
     kind: Literal["volume"]
 
     unit: ClassVar[str] = "m^3"
-    """Cubic metres; square metres in plane strain."""
+    """Cubic metres; m^2 in plane strain."""
 
     @property
     def words(self) -> str:
@@ -176,6 +179,11 @@ AnyAsked = Annotated[
     AskedDisplacement | AskedStress | AskedForce | AskedTorque | AskedContactForce | AskedEnergy | AskedVolume,
     Field(discriminator="kind"),
 ]
+
+
+def unit_of(asked: AnyAsked, dimension: Dimension) -> str:
+    """SI unit of a number that is asked for; in plane strain per metre of depth."""
+    return PER_DEPTH.get(asked.unit, asked.unit) if dimension == "plane_strain" else asked.unit
 
 
 def place_in_words(place: Sequence[float]) -> str:

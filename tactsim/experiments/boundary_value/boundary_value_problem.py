@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any, ClassVar, Literal, Self
 
-from tactsim.experiments.boundary_value.asked import AskedForce, AskedStress
+from tactsim.experiments.boundary_value.asked import AskedForce, AskedStress, unit_of
 from tactsim.experiments.boundary_value.conditions import ClampCondition, DisplacementCondition
 from tactsim.experiments.boundary_value.geometry import BlockGeometry, Span
 from tactsim.experiments.boundary_value.motions import motions_of
@@ -18,7 +18,7 @@ from tactsim.progress import Extent
 
 def _history_units(problem: BoundaryValueProblem) -> dict[str, str]:
     """Unit of every value that a step records."""
-    return RECORDED | {name: one.unit for name, one in problem.asked.items()}
+    return RECORDED | {name: unit_of(one, problem.dimension) for name, one in problem.asked.items()}
 
 
 class BoundaryValueProblem(BoundaryValueSetup, Experiment):

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tactsim.errors import ConvergenceError
+from tactsim.experiments.boundary_value.asked import unit_of
 from tactsim.experiments.boundary_value.branching import unstable_in_words
 from tactsim.experiments.boundary_value.conditions import SIDES
 from tactsim.experiments.boundary_value.limit_load import LimitLoad
@@ -36,8 +37,6 @@ WIDER = 10.0
 """Factor of a penetration tolerance that is advised where the contact does not converge."""
 SHORTER = 100
 """Factor of the number of steps that is advised where not even the first is found."""
-PER_DEPTH = ("N", "N*m", "J", "m^3")
-"""Units of numbers that are those of a metre of depth in plane strain."""
 SAME_TIME = 1e-9
 """Relative difference of two times that is round-off."""
 
@@ -184,13 +183,14 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         """A number at its time; None if the run did not come so far."""
         one = self.problem.asked[name]
         words = one.words if one.factor == 1 else f"{one.words}, times {one.factor:g}"
-        if self.problem.dimension == "plane_strain" and one.unit in PER_DEPTH:
+        unit = unit_of(one, self.problem.dimension)
+        if unit != one.unit:
             words += ", per metre of depth"
         if one.time is None:
-            return Quantity(self.steps[-1].values[name], one.unit, words + LAST)
+            return Quantity(self.steps[-1].values[name], unit, words + LAST)
         step = self._step_at(one.time)
         when = format_quantity(one.time, "s")
-        return None if step is None else Quantity(step.values[name], one.unit, f"{words}, at {when}")
+        return None if step is None else Quantity(step.values[name], unit, f"{words}, at {when}")
 
     def _step_at(self, time: float) -> StepRecord | None:
         """The last step at a time in s."""
@@ -225,18 +225,21 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         ]
 
     def _touching(self) -> tuple[TouchingBody, ...]:
-        """The rigid bodies where they first touch."""
-        sides = SIDES[self.problem.dimension]
-        together = zip(self.problem.contacts, self.model.conditions.contacts, strict=True)
+        """The rigid bodies where they first touch, and where they came to."""
+        sides, begin = SIDES[self.problem.dimension], [moved.posed for moved in self.model.conditions.contacts]
+        last = self._kept["last"].state.contact.contacts if "last" in self._kept else begin
         return tuple(
-            TouchingBody(body=one.body, axis=sides[one.side], place=tuple(moved.posed.place.tolist())) for one, moved in together
+            TouchingBody(
+                body=one.body, axis=sides[one.side], place=tuple(first.place.tolist()), reached=tuple(now.place.tolist())
+            )
+            for one, first, now in zip(self.problem.contacts, begin, last, strict=True)
         )
 
     def scene(self) -> BoundaryValueScene:
         """What the figure reads."""
         return BoundaryValueScene(
             dimension=self.problem.dimension,
-            asked={name: one.unit for name, one in self.problem.asked.items()},
+            asked={name: unit_of(one, self.problem.dimension) for name, one in self.problem.asked.items()},
             touching=self._touching(),
             solver=solver_report(self),
         )

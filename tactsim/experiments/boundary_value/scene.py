@@ -11,7 +11,7 @@ from tactsim.results.scene import Scene, SolverReport
 
 
 class TouchingBody(FrozenModel):
-    """A rigid body at first touch."""
+    """A rigid body, at first touch and where it came to."""
 
     body: Annotated[RigidBody, Registered(RigidBody)]
     """The body in its own axes."""
@@ -19,6 +19,8 @@ class TouchingBody(FrozenModel):
     """Unit vector from the tissue to the body."""
     place: tuple[float, ...]
     """Its reference point in m."""
+    reached: tuple[float, ...] | None = None
+    """Its reference point in m in the last accepted state; None in results of before it was kept."""
 
 
 class BoundaryValueScene(Scene):

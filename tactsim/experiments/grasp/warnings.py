@@ -72,7 +72,7 @@ def unlikely(grasp: GraspSetup) -> list[str]:
     materials = {"block.tissue": grasp.block.tissue}
     materials |= {f"the material of {inclusion_name(k, e.shape)}": e.material for k, e in enumerate(grasp.inclusions, 1)}
     tissue = {f"block.size along {axis}": side for axis, side in zip("xyz", grasp.block.size, strict=True)}
-    jaws = {side: grasp.jaw(side) for side in JAWS}
-    bodies = {f"{name} of the {side} jaw": getattr(jaw, name) for side, jaw in jaws.items() for name in ("width", "depth")}
-    warnings = oddities(materials, tissue=tissue, bodies=bodies | {"matrix.size": grasp.matrix.size})
+    jaws = {f"{side}.{name}": getattr(getattr(grasp, side), name) for side in JAWS for name in ("width", "depth")}
+    given = {name: length for name, length in jaws.items() if length is not None}  # others follow from the block
+    warnings = oddities(materials, tissue=tissue, bodies=given | {"matrix.size": grasp.matrix.size})
     return [*warnings, *interpreted_warnings(materials)]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any, Literal
 
 import numpy as np
@@ -65,7 +66,7 @@ class BoundaryValueFigures(SingleFigure):
         with result_figure(result, (6.0 + body * beside, 4.2), TITLE, where=where) as figure:
             axes = figure.subplots(1, 1 + body, squeeze=False, width_ratios=(1.2, ratio) if body else None)[0]
             if body:
-                draw_body(axes[0], result.frames[-1], scene.dimension)
+                draw_body(axes[0], result.frames[-1], scene.dimension, scene.touching)
             draw_course(axes[-1], result, scene)
         return figure
 
@@ -87,7 +88,7 @@ def sketch_figure(result: Result) -> Figure:
             _draw_conditions(axis, result.experiment)
         for number, touching in enumerate(scene.touching, 1):
             if flat:
-                _draw_rigid(axis, touching)
+                _draw_rigid(axis, touching, touching.place)
             axis.plot([], [], "s", color=RIGID_COLOUR, label=f"rigid body {number}: {touching.body.kind}")
         axis.set_title(f"at rest: {scene.solver.size_in_words}", loc="left")
         _framed(axis, scene.dimension)
@@ -129,19 +130,19 @@ def _in_words(condition: AnyCondition) -> str:
     return f"{place}: {' '.join([kind.replace('point', 'displacement'), ', '.join(given)]).strip()}"
 
 
-def _draw_rigid(axis: Axes, touching: TouchingBody) -> None:
-    """A rigid body in the plane, filled from its signed distance within the picture."""
+def _draw_rigid(axis: Axes, touching: TouchingBody, place: Sequence[float]) -> None:
+    """A rigid body at its place in m in the plane, filled from its signed distance within the picture."""
     (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
     x, y = np.meshgrid(np.linspace(left, right, TRACED), np.linspace(bottom, top, TRACED))
     body = Turned.of(touching.body, touching.axis)
-    points = 1e-3 * np.array([x.ravel(), y.ravel()]) - np.array(touching.place)[:, None]
+    points = 1e-3 * np.array([x.ravel(), y.ravel()]) - np.array(place)[:, None]
     distance = body.signed_distance(points)[0].reshape(x.shape)
     axis.contourf(x, y, distance, levels=[-np.inf, 0.0], colors=[RIGID_COLOUR], zorder=3)
     axis.set(xlim=(left, right), ylim=(bottom, top))
 
 
-def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
-    """The deformed body, each element in the colour of its von Mises stress, and its undeformed outline in 2D."""
+def draw_body(axis: Axes, frame: FieldFrame, dimension: str, touching: Sequence[TouchingBody] = ()) -> None:
+    """The deformed body, each element in the colour of its von Mises stress, and in 2D the rigid bodies where they came to."""
     places = 1e3 * (frame.points + frame.point_data[DISPLACEMENT])
     polygons, owners = _section(frame) if "triangle6" in frame.cells else _surface(frame, places)
     flat = places[:, :2] if "triangle6" in frame.cells else _projected(places)
@@ -166,7 +167,10 @@ def draw_body(axis: Axes, frame: FieldFrame, dimension: str) -> None:
     limits = "" if beyond == "neither" else "\n(colours: 1st to 99th percentile of what is seen)"
     bar.set_label(f"von Mises stress in {unit}, one value for each element{limits}")
     bar.outline.set_linewidth(0.5)
-    axis.set_title(words, loc="left")
+    rigid = [] if dimension == "3d" else [(one, one.reached) for one in touching if one.reached is not None]
+    for one, place in rigid:
+        _draw_rigid(axis, one, place)
+    axis.set_title(words + ("; grey: rigid" if rigid else ""), loc="left")
     _framed(axis, dimension)
 
 

@@ -35,9 +35,8 @@ MOST_NAMED, NAME = 5, 0.42
 """Matrices with more rows or columns than this, or with a smaller pitch in inches, have the first and the last one named."""
 MOST_BORDERED = 100
 """Matrices with more taxels than this have no borders, which would cover the colours."""
-FITTING, LARGEST, SMALLEST = 9.8, 9.0, 3.0
-"""Size in points of the letters with which a pressure fills a taxel of an inch, and the largest and smallest size that is
-written."""
+FITTING, LARGEST, SMALLEST = 78.0, 9.0, 5.0
+"""Size in points of a letter that fills a taxel of an inch alone, and the largest and smallest size of those of a pressure."""
 MAP, WIDEST, HIGHEST = 3.05, 7.0, 2.4
 """Longer side in inches of a map beside the other, and width and height within which a map below the other stays."""
 WIDE, LONGEST = 2.0, 2.0
@@ -77,6 +76,33 @@ class MapsLayout:
         return cls(rows, 3 - rows, side, (WIDTH, height))
 
 
+@dataclass(frozen=True)
+class Numbering:
+    """How pressures are written into the taxels of a jaw.
+
+    Attributes
+    ----------
+    digits : of the highest pressure
+    unit : behind each, with a space before it, and the force beneath it; empty if neither has room
+    letters : their size in points
+    """
+
+    digits: int
+    unit: str
+    letters: float
+
+    @classmethod
+    def of(cls, grasp: LoadedTaxels, side: str, scale: PressureScale) -> Numbering | None:
+        """The fullest that is legible; None if none is."""
+        room = FITTING * grasp.scene.matrix.size * _inches_per_metre(grasp.scene, side)
+        for digits, unit in ((3, f" {scale.unit}"), (3, ""), (2, "")):
+            written = [_pressure(value, scale, digits) for value in grasp.pressures[side].ravel()]
+            letters = min(room / (max(map(len, written)) + len(unit)), LARGEST)
+            if letters >= SMALLEST:
+                return cls(digits, unit, letters)
+        return None
+
+
 def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
     """The upper and the lower jaw seen from above, with one colour bar."""
     scale, bodies = grasp.pressure_scale, list(true_bodies(grasp.scene))
@@ -95,8 +121,8 @@ def draw_maps(axes: Sequence[Axes], grasp: LoadedTaxels) -> None:
     bar = axes[0].figure.colorbar(
         ScalarMappable(scale.norm, PRESSURE_COLOURS), ax=list(axes), location="bottom", shrink=0.7, aspect=40, pad=0.02
     )
-    written = [side for side in JAWS if _letters(grasp.scene, side) >= SMALLEST]
-    small = "; beneath it the force" if written else ""
+    numbered = [numbering for side in JAWS if (numbering := Numbering.of(grasp, side, scale))]
+    small = "; beneath it the force" if any(numbering.unit for numbering in numbered) else ""
     dashed = "undeformed block" + (" and outline of the inclusions" if bodies else "")
     bar.set_label(
         f"mean pressure on the taxel in {scale.unit}, one scale for both jaws{small}\nboth seen from above; dashed: {dashed}"
@@ -124,9 +150,19 @@ def draw_plan(axis: Axes, result: Result) -> None:
 
 def _digits(value: float, count: int) -> str:
     """A number to some significant digits, zeros at its end included, and never with an exponent."""
+    return with_minus(f"{float(f'{value:.{count}g}'):.{_decimals(value, count)}f}")
+
+
+def _decimals(value: float, count: int) -> int:
+    """Decimals of a number to some significant digits."""
     rounded = float(f"{value:.{count}g}")
-    decimals = max(0, count - 1 - math.floor(math.log10(abs(rounded)))) if rounded else 0
-    return with_minus(f"{rounded:.{decimals}f}")
+    return max(0, count - 1 - math.floor(math.log10(abs(rounded)))) if rounded else 0
+
+
+def _pressure(value: float, scale: PressureScale, digits: int) -> str:
+    """A pressure in Pa in the unit of the scale, with the decimals of the highest, which has so many significant digits."""
+    decimals = _decimals(float(scale.norm.vmax or 0.0), digits)
+    return with_minus(f"{round(float(scale.factor * value), decimals) + 0.0:.{decimals}f}")
 
 
 def _seen_from_above(axis: Axes) -> None:
@@ -141,14 +177,14 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
     layout = grasp.scene.matrix
     columns, rows = (grasp.scene.borders(along, side) for along in "xy")
     colours, size = matplotlib.colormaps[PRESSURE_COLOURS], 1e3 * layout.size
-    large, (per_newton, force_unit) = _letters(grasp.scene, side), grasp.taxel_force_scale
+    numbering, (per_newton, force_unit) = Numbering.of(grasp, side, scale), grasp.taxel_force_scale
     border = 0.6 if grasp.pressures[side].size <= MOST_BORDERED else 0.0
     squares: list[Rectangle] = []
     for (row, column), pressure in np.ndenumerate(grasp.pressures[side]):
         corner = (columns[column, 0], rows[row, 0])
         shade = float(scale.norm(scale.factor * pressure))
         squares.append(Rectangle(corner, size, size, facecolor=colours(shade), edgecolor="#30363d", linewidth=border))
-        if large < SMALLEST:
+        if numbering is None:
             continue
         style: dict[str, Any] = {
             "ha": "center",
@@ -158,10 +194,12 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
             "path_effects": [withStroke(linewidth=2.2, foreground=colours(shade))],  # a rim: no line runs through letters
         }
         x, y = corner[0] + size / 2, corner[1] + size / 2
-        written = _digits(scale.factor * pressure, 3)
-        axis.text(x, y, f"{written} {scale.unit}", va="bottom", fontsize=large, fontweight="bold", **style)
-        force = _digits(float(per_newton * grasp.forces[side][row, column]), 2)
-        axis.text(x, y - 0.06 * size, f"{force} {force_unit}", va="top", fontsize=0.72 * large, **style)
+        written, above = f"{_pressure(pressure, scale, numbering.digits)}{numbering.unit}", bool(numbering.unit)
+        place: dict[str, Any] = {"va": "bottom" if above else "center", "fontsize": numbering.letters, "fontweight": "bold"}
+        axis.text(x, y, written, **place, **style)
+        if above:
+            force = _digits(float(per_newton * grasp.forces[side][row, column]), 2)
+            axis.text(x, y - 0.06 * size, f"{force} {force_unit}", va="top", fontsize=0.72 * numbering.letters, **style)
     axis.add_collection(PatchCollection(squares, match_original=True, zorder=2))  # thousands one by one take a minute
     named: dict[str, Any] = {"fontsize": 7, "color": "#57606a"}
     right, back = _extent(grasp.scene, side)[1] + BESIDE * drawn_millimetre(grasp.scene.size)
@@ -170,11 +208,6 @@ def _draw_matrix(axis: Axes, grasp: LoadedTaxels, side: str, scale: PressureScal
         axis.text(right, rows[number - 1].mean(), f"row {number}", ha="left", va="center", **named)
     for number in named_lines(layout.columns, every=every and layout.columns <= MOST_NAMED):
         axis.text(columns[number - 1].mean(), back, f"col. {number}", ha="center", va="bottom", **named)
-
-
-def _letters(scene: GraspScene, side: str) -> float:
-    """Size in points of the letters with which a pressure and its unit fit into a taxel."""
-    return min(FITTING * scene.matrix.size * _inches_per_metre(scene, side), LARGEST)
 
 
 def _inches_per_metre(scene: GraspScene, side: str) -> float:

@@ -7,8 +7,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
+from matplotlib.contour import ContourSet
 from pretence import pretended_result
 from skfem import MeshTri
+from small_problems import SIDE, SQUARE, asked, result_of
 
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
 from tactsim.experiments.boundary_value.figures.boundary_value_problem import draw_body
@@ -90,3 +92,20 @@ def test_the_bar_says_where_its_colours_end():
     steep, even = ([one for one in axis.figure.axes if one is not axis] for axis in (drawn(1.0, 0.5), drawn(1.0, 0.0)))
     assert steep[0].get_xlabel().endswith("one value for each element\n(colours: 1st to 99th percentile of what is seen)")
     assert "percentile" not in even[0].get_xlabel()
+
+
+def test_the_rigid_body_is_drawn_where_it_came_to() -> None:
+    """The picture left it out."""
+    sides = [{"kind": "displacement", "face": "left", "x": 0.0}, {"kind": "displacement", "face": "bottom", "y": 0.0}]
+    plane = {"face": "top", "side": "top", "body": {"kind": "plane"}, "y": -0.1 * SIDE}
+    common = {"dimension": "plane_strain", "geometry": SQUARE, "conditions": sides, "steps": 2}
+    result = result_of(**common, contacts=[plane], asked=asked("contact_force", component="y"))
+    (touching,) = result.scene_as(BoundaryValueScene).touching
+    assert (touching.place[1], touching.reached[1]) == pytest.approx((SIDE, 0.9 * SIDE))
+    axis = result.plot("boundary_value_problem").axes[0]
+    assert axis.get_title(loc="left").endswith("; grey: rigid")
+    (filled,) = [one for one in axis.collections if isinstance(one, ContourSet)]
+    lowest = min(path.vertices[:, 1].min() for path in filled.get_paths())
+    assert lowest == pytest.approx(900.0 * SIDE, abs=10.0 * SIDE), "mm, as fine as its distance is sampled"
+    earlier = result.scene_as(BoundaryValueScene).model_copy(update={"touching": [touching.model_copy(update={"reached": None})]})
+    assert "rigid" not in replace(result, scene=earlier).plot("boundary_value_problem").axes[0].get_title(loc="left")

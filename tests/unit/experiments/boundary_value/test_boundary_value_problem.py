@@ -25,6 +25,7 @@ from small_problems import (
 )
 
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
+from tactsim.experiments.boundary_value.scene import BoundaryValueScene
 from tactsim.plotting import figures_for
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -93,6 +94,27 @@ def test_plane_strain_is_stiffer_than_a_free_bar():
     question = asked("force", face="top", component="y")
     force = number(dimension="plane_strain", geometry=SQUARE, conditions=[*sides, pulled], asked=question)
     assert force == pytest.approx(2 * (C10 + C01) * (STRETCH - STRETCH**-3) * SIDE, rel=1e-7)  # pure shear, per metre of depth
+
+
+def test_what_a_whole_body_has_is_per_metre_of_depth_in_plane_strain():
+    """Forces said N, with a metre of depth in their words only."""
+    sides = [{"kind": "clamped", "face": "bottom"}, {"kind": "displacement", "face": "top", "x": 0.1 * SIDE, "y": 0.0}]
+    question = {
+        "force": {"kind": "force", "face": "top", "component": "x", "time": 1.0},
+        "torque": {"kind": "torque", "face": "top"},
+        "energy": {"kind": "energy"},
+        "volume": {"kind": "volume"},
+        "stress": {"kind": "stress", "at": (0.0, 0.0), "component": "xy"},
+    }
+    result = result_of(dimension="plane_strain", geometry=SQUARE, conditions=sides, asked=question, steps=1)
+    units = {"force": "N/m", "torque": "N*m/m", "energy": "J/m", "volume": "m^2", "stress": "Pa"}
+    assert {name: result.quantities[name].unit for name in question} == units
+    assert {name: result.experiment.history_units[name] for name in question} == units
+    assert result.scene_as(BoundaryValueScene).asked == units
+    assert result["volume"].value == pytest.approx(SIDE**2, rel=1e-6)
+    assert [name for name in question if "per metre of depth" in result[name].description] == list(question)[:4]
+    solid = result_of(geometry=BRICK, conditions=PLANES, asked=asked("force", face="top", component="z"), steps=1)
+    assert solid.quantities["number"].unit == "N"
 
 
 @pytest.mark.parametrize("side", ["left", "right", "bottom", "top", "front", "back"])
