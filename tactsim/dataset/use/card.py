@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactsim.dataset.cost import slow_lines
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.settings import Splits
 from tactsim.dataset.sampling.sweep import Sweep
@@ -17,6 +18,7 @@ from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import refuse_redescribed
 from tactsim.dataset.use.counts import (
+    costs_of,
     empty_splits,
     failures,
     never_drawn,
@@ -107,6 +109,8 @@ def _how(store: Store, sweep: Sweep) -> list[str]:
         f"Sample k depends on the seed and on k only{hypercube}.",
         f"Draws whose case is impossible are drawn again: {draws} draws of {specimens} specimens were refused.",
         f"Computed by tactsim {plain(', '.join(attributes['codes']))}; {versions}.",
+        "",
+        *(plain(line) if line[0] != " " else f"- {plain(line.strip())}" for line in slow_lines(costs_of(store))),
         "",
     ]
 
@@ -202,7 +206,7 @@ def _limits(stated: str) -> list[str]:
     return [
         "## Known limits",
         *(f"- {line}" for line in GENERAL_LIMITS),
-        *(f"- {plain(line)}" for line in stated.splitlines() if line.strip()),
+        *(f"- {plain(line.strip())}" for line in stated.splitlines() if line.strip()),
         "",
     ]
 
@@ -227,6 +231,7 @@ def description(path: str | Path) -> str:
     lines += [*status_lines(store), *(f"  {name:<28} {count}" for name, count in split_counts(store).items())]
     lines += [f"  {count} x {reason}" for reason, count in failures(store)]
     lines += [f"  {count} x warning: {words}" for words, count in warnings_of(store)]
+    lines += [f"  {line}" for line in slow_lines(costs_of(store))]
     lines += aligned(variable_rows(store), left=4, indent="  ")
     return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check says more" for name in store.missing)])
 

@@ -6,6 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tactsim.array import Array
+from tactsim.dataset.cost import COST
 from tactsim.dataset.sampling.settings import Splits
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS
@@ -47,6 +49,13 @@ def split_counts(store: Store) -> dict[str, int]:
     split, status = store.read("split"), store.read("status")
     names = one_line(store.described["split"].attributes.get("flag_meanings", "")).split()
     return {name: int(((split == number) & (status == DONE)).sum()) for number, name in enumerate(names)}
+
+
+def costs_of(store: Store) -> dict[str, Array]:
+    """Numbers (n,) of the computed samples, their wall times in s and what is known of their cost."""
+    computed = np.flatnonzero(store.read("status") != PENDING)
+    known = [name for name in ("wall_time", *COST) if name in store.described]
+    return {"sample": computed} | {name: store.read(name, computed) for name in known}
 
 
 def empty_splits(counts: Mapping[str, int], splits: Splits) -> list[str]:

@@ -22,6 +22,7 @@ from sweeps import TEXT, compute_once_here, sweep_file
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, checking, load, sample_case
 from tactsim.dataset.checking import check
+from tactsim.dataset.cost import COST
 from tactsim.dataset.running.run import Tally
 from tactsim.dataset.sampling.layout import Layout, layout_of
 from tactsim.dataset.sampling.stored import stored_layout
@@ -351,13 +352,25 @@ def test_the_description_and_the_card_say_the_numbers_of_failures(store: Path) -
     assert "  3 x took longer than the 8 s that it was given" in description(store)
 
 
+def timed(samples: list[int], seconds: list[float]) -> dict[str, np.ndarray]:
+    """What a tally reads of a block of samples that took so long and solved nothing."""
+    return {"sample": np.array(samples), "wall_time": np.array(seconds)} | {name: np.zeros(len(samples), int) for name in COST}
+
+
 def test_the_slowest_samples_are_named_at_the_end() -> None:
     tally = Tally(samples=6)
-    tally.timed(np.array([3, 4, 5]), np.array([4.0, 63.0, 5.0]))
-    tally.timed(np.array([0, 1]), np.array([6.0, 31.0]))
-    assert "a sample took 6 s in the median; the slowest 63 s (sample 4), 31 s (sample 1), 6 s (sample 0)" in tally.summary()
+    steps = np.ones(3, int)
+    mesh = {"unknowns": np.array([9000, 40000, 9500]), "newton_iterations": np.array([8, 31, 9])}
+    tally.timed(timed([3, 4, 5], [4.0, 63.0, 5.0]) | {"steps": steps, "rejected_steps": steps - 1} | mesh)
+    tally.timed(timed([0, 1], [6.0, 31.0]) | {"rejected_steps": np.array([0, 2])})
+    assert tally.summary()[1:] == [
+        "a sample took 6 s, 9000 unknowns, 1 step, 8 Newton iterations in the median; the slowest:",
+        "  63 s, sample 4, 40000 unknowns, 1 step, 31 Newton iterations",
+        "  31 s, sample 1, 2 rejected steps",
+        "  6 s, sample 0",
+    ]
     quick = Tally(samples=2)
-    quick.timed(np.array([0, 1]), np.array([0.1, 0.2]))
+    quick.timed(timed([0, 1], [0.1, 0.2]))
     assert len(quick.summary()) == 1, "of quick ones it says nothing"
 
 
