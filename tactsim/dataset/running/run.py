@@ -63,13 +63,14 @@ class Tally:
         """Notes how long new samples took, and what they cost."""
         self.costs.append({name: block[name] for name in ("sample", "wall_time", *COST)})
 
-    def add(self, warnings: list[str], reasons: list[str]) -> None:
-        """Counts new samples: by the warnings of each that is done, and by the reasons of those that failed."""
+    def add(self, warnings: dict[int, str], reasons: dict[int, str]) -> None:
+        """Counts new samples: by the warnings of each that is done, and by the reasons of those that failed, by their numbers."""
         self.done += len(warnings)
         self.failed += len(reasons)
-        for text in warnings:
-            self.warned.update_of_one(text.splitlines())
-        self.reasons.update(reasons)
+        for sample, text in warnings.items():
+            self.warned.add(sample, text.splitlines())
+        for sample, text in reasons.items():
+            self.reasons.add(sample, [text])
 
     @property
     def rate(self) -> float:
@@ -98,8 +99,11 @@ class Tally:
         if self.damaged:
             lines.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
             lines += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
-        lines += [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(MOST_KINDS)]
-        return lines + [f"  {count} x warning: {one_line(words)}" for words, count in self.warned.most_common(MOST_KINDS)]
+        counted = [
+            (one, f"failed: {one_line(one.text)}", self.done + self.failed) for one in self.reasons.most_common(MOST_KINDS)
+        ]
+        counted += [(one, f"warning: {one_line(one.text)}", self.done) for one in self.warned.most_common(MOST_KINDS)]
+        return lines + [f"  {one.of(samples)}: {words}" for one, words, samples in counted]
 
 
 def _per_time(rate: float) -> str:
@@ -166,9 +170,7 @@ class SweepRun:
         self.journal.append(content)
         self.blocks.append(block)
         self.tally.timed(block)
-        failed = block["status"] == FAILED
-        warnings = [str(text) for text in block["warnings"][block["status"] == DONE]]
-        self.tally.add(warnings, [str(reason) for reason in block["reason"][failed]])
+        self.tally.add(_by_sample(block, "warnings", DONE), _by_sample(block, "reason", FAILED))
         waiting = sum(len(block["sample"]) for block in self.blocks)
         if waiting >= FOLD_SAMPLES or time.monotonic() - self.folded > FOLD_SECONDS:
             self.fold()
@@ -231,6 +233,12 @@ class SweepRun:
             content = computed(self.sweep.text, [number], lost=reason, folder=self.sweep.folder)
             self.keep(content, decoded(content))
         return again
+
+
+def _by_sample(block: Block, name: str, status: int) -> dict[int, str]:
+    """Number of each sample of a status -> its text of a name."""
+    these = block["status"] == status
+    return dict(zip(block["sample"][these].tolist(), map(str, block[name][these]), strict=True))
 
 
 def _next_task(todo: deque[tuple[int, ...]], size: int) -> tuple[int, ...]:

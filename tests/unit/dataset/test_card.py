@@ -51,9 +51,11 @@ def test_what_samples_warn_of_is_counted(tmp_path: Path) -> None:
     with opened_run(sweep, tmp_path / "s.zarr") as going:
         going.compute(Inline(sweep), lambda tally: None)
     stored = Store.open(tmp_path / "s.zarr")
-    counts = dict(card.warnings_of(stored))
+    counts = {one.text: one for one in card.warnings_of(stored)}
     (beyond,) = (words for words in counts if "linear theory" in words)
-    assert counts[beyond] == sum("linear theory" in text for text in stored.read("warnings")) > 0
+    these = [number for number, text in enumerate(stored.read("warnings")) if "linear theory" in text]
+    assert (counts[beyond].count, list(counts[beyond].first)) == (len(these), these[:5])
+    assert these
     assert beyond in card.description(tmp_path / "s.zarr")
     assert "## Warnings of samples that are done" in card_text(stored, sweep, layout_of(sweep))
 
