@@ -50,10 +50,16 @@ def test_equal_cases_run_once_and_what_ended_is_kept(tmp_path: Path, computed: l
     assert [outcome.id for outcome in outcomes["one"]["icf"]] == ["default", "stick"]
     assert outcomes["one"] == outcomes["two"]
     assert computed == [load_case(CASES / STUDY.case, STUDY.overrides(one)).case_id for one in STUDY.runs]
-    assert run(StudyRunner(cache=tmp_path)) == outcomes
+    again = StudyRunner(cache=tmp_path)
+    assert run(again) == outcomes
     assert computed[2:] == [computed[1]], "only the interrupted run is computed again"
-    run(StudyRunner(cache=tmp_path, fresh=True))
-    assert computed[3:] == computed[:2]
+    assert (again.computed, again.from_cache) == ({computed[1]}, {computed[0]})
+    run(again)
+    assert (again.computed, again.from_cache) == ({computed[1]}, {computed[0]}), "of what it computed itself it says nothing new"
+    fresh = StudyRunner(cache=tmp_path, fresh=True)
+    run(fresh)
+    assert computed[4:] == computed[:2]
+    assert (fresh.computed, fresh.from_cache) == (set(computed[:2]), set())
 
 
 def test_a_broken_cache_is_ignored(tmp_path: Path, computed: list[str]) -> None:
