@@ -13,7 +13,7 @@ from tactsim.shipped import PROGRAM
 
 if TYPE_CHECKING:
     from tactsim.results.folder import OutputFolder
-    from tactsim.validation import LoadedTables, Validation
+    from tactsim.validation import LoadedTables, StudyRunner, Validation
 
 NAME = "validate"
 SUMMARY = "compare with the tables of the thesis and with published problems"
@@ -45,6 +45,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="DIR", type=Path, default=Path("results", "validation"), help="default: %(default)s")
     parser.add_argument("--fresh", action="store_true", help="compute again what earlier validations computed")
     parser.add_argument("--workers", metavar="N", type=int, help="processes for simulations; default: one a core")
+    parser.add_argument("--progress", action="store_true", help="report every simulation that ends even where nobody watches")
     parser.add_argument(
         "--from", dest="folder", metavar="DIR", type=Path, help="folder of the tables; default: those that come with tactsim"
     )
@@ -58,22 +59,26 @@ def run(arguments: argparse.Namespace) -> int:
     TactsimError
         Whatever ends the command with an exit code of its own, such as options that do not go together.
     """
+    from tactsim.outside.environment import usable_cores
     from tactsim.results.folder import claimed, refuse_others
-    from tactsim.validation import load_groups, summary_text
+    from tactsim.validation import StudyRunner, load_groups, summary_text
 
     if arguments.workers is not None and arguments.workers < 1:
         raise InputError(f"--workers {arguments.workers} is out of range; must be at least 1")
     folders = [arguments.folder] if arguments.folder else shipped_folders()
     groups = load_groups(folders, arguments.tables)
+    runner = StudyRunner(workers=arguments.workers or usable_cores(), fresh=arguments.fresh)
     with claimed(arguments.out, replace=True) as folder:  # a place that is refused is refused before minutes of computing
         refuse_others(arguments.out, REPORT, "validation report")
         try:
-            validations = [_validated(loaded, arguments) for loaded in groups]
+            validations = [_validated(loaded, runner, arguments.progress) for loaded in groups]
         except KeyboardInterrupt:
             raise KeyboardInterrupt(NOT_WRITTEN) from None
         for validation in validations:
             console.out(summary_text(validation))
         _write(validations, folder)
+    if origin := _origin(runner):
+        console.out(origin)
     wrong = [name for validation in validations for name in validation.wrong]
     state = f"left their class: {', '.join(wrong)}" if wrong else "every row ended as recorded"
     console.out(f"{state}; report {arguments.out / 'validation.html'}")
@@ -98,23 +103,34 @@ def _write(validations: Sequence[Validation], folder: OutputFolder) -> None:
         console.note(f"warning: {trouble}")
 
 
-def _validated(loaded: LoadedTables, arguments: argparse.Namespace) -> Validation:
-    """The tables of a group computed and compared; each is printed when it is complete."""
-    from tactsim.outside.environment import usable_cores
-    from tactsim.validation import StudyRunner, Validation, compare, table_text
+def _origin(runner: StudyRunner) -> str:
+    """How many simulations were computed, and how many an earlier validation left; nothing if there was none."""
+    computed, kept = len(runner.computed), len(runner.from_cache)
+    if not kept:
+        return ""
+    held = f"all {kept} simulations of the studies are" if not computed else f"{computed} simulations were computed, {kept} are"
+    return f"{held} from the cache; --fresh computes them again"
 
-    runner = StudyRunner(workers=arguments.workers or usable_cores(), fresh=arguments.fresh)
+
+def _validated(loaded: LoadedTables, runner: StudyRunner, progress: bool) -> Validation:
+    """The tables of a group computed and compared; each is printed when it is complete. ``progress`` reports also unwatched."""
+    from tactsim.validation import Validation, compare, table_text
+
+    report = _report if progress or console.notes_are_watched() else _say_nothing
     wanted = {name: table.studies for name, table in loaded.tables.items()}
     ended = {}
-    for name, studies in runner.outcomes(wanted, loaded.folder, _progress):
+    for name, studies in runner.outcomes(wanted, loaded.folder, report):
         ended[name] = compare(name, loaded.tables[name], loaded.folder, studies)
         console.out(table_text(ended[name]))
     return Validation(loaded, tuple(ended[name] for name in loaded.tables))
 
 
-def _progress(line: str) -> None:
-    if console.notes_are_watched():
-        console.note(f"  {line}")
+def _report(line: str) -> None:
+    console.note(f"  {line}")
+
+
+def _say_nothing(line: str) -> None:
+    """Nobody watches."""
 
 
 def shipped_folders() -> list[Path]:

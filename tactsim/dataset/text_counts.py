@@ -12,20 +12,45 @@ LONGEST, LONGEST_WARNING = 160, 400
 """Characters by which reasons of failures, and warnings, are told apart, a number counted as one."""
 
 
+SHOWN = 5
+"""Samples that are named, the first of those with a text."""
 RANGE = " to "
 """Between two numbers of a text that are the ends of a range."""
 
 
+@dataclass(frozen=True)
+class CountedText:
+    """A text, how many samples have it, and the first of their numbers."""
+
+    text: str
+    count: int
+    first: tuple[int, ...] = ()
+
+    @property
+    def which(self) -> str:
+        """The first samples that have it, such as ``3, 12, 40, ...``."""
+        return ", ".join([*map(str, self.first), *(["..."] if 0 < len(self.first) < self.count else [])])
+
+    def of(self, samples: int) -> str:
+        """Of how many of ``samples`` it is, and of which, such as ``7 of 100 samples (3, 12, 40, ...)``."""
+        if not self.first:  # texts of several kinds, of which a sample may have more than one
+            return f"{self.count} times"
+        return f"all {samples} samples" if self.count == samples > 1 else f"{self.count} of {samples} samples ({self.which})"
+
+
 @dataclass
 class _Kind:
-    """Texts that differ in their numbers only: how many, and the least and the largest number of each place as written."""
+    """Texts that differ in their numbers only: how many, of which samples the first, and the least and the largest number of each
+    place as written."""
 
     count: int
+    first: list[int]
     least: list[str]
     largest: list[str]
 
-    def add(self, numbers: list[str]) -> None:
+    def add(self, sample: int, numbers: list[str]) -> None:
         self.count += 1
+        self.first = sorted([*self.first, sample])[:SHOWN]
         self.least = [min(pair, key=float) for pair in zip(self.least, numbers, strict=True)]
         self.largest = [max(pair, key=float) for pair in zip(self.largest, numbers, strict=True)]
 
@@ -51,26 +76,18 @@ class TextCounts:
         self._kinds: dict[tuple[str, ...], _Kind] = {}
         self._longest = longest
 
-    def update(self, texts: Iterable[str]) -> None:
-        """Counts texts."""
-        for text in texts:
-            self._add(*self._parts(text))
-
-    def update_of_one(self, texts: Iterable[str]) -> None:
+    def add(self, sample: int, texts: Iterable[str]) -> None:
         """Counts texts of one sample, each kind once."""
         for words, numbers in dict(map(self._parts, texts)).items():
-            self._add(words, numbers)
+            if words in self._kinds:
+                self._kinds[words].add(sample, numbers)
+            else:
+                self._kinds[words] = _Kind(1, [sample], numbers, numbers)
 
-    def most_common(self, most: int | None = None) -> list[tuple[str, int]]:
+    def most_common(self, most: int | None = None) -> list[CountedText]:
         """Texts and their counts, the most frequent first."""
         pairs = sorted(self._kinds.items(), key=lambda pair: -pair[1].count)[:most]
-        return [(kind.text(words), kind.count) for words, kind in pairs]
-
-    def _add(self, words: tuple[str, ...], numbers: list[str]) -> None:
-        if words in self._kinds:
-            self._kinds[words].add(numbers)
-        else:
-            self._kinds[words] = _Kind(1, numbers, numbers)
+        return [CountedText(kind.text(words), kind.count, tuple(kind.first)) for words, kind in pairs]
 
     def _parts(self, text: str) -> tuple[tuple[str, ...], list[str]]:
         """The beginning of a text: its words, and the numbers between them."""

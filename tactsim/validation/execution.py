@@ -7,7 +7,7 @@ import math
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from time import monotonic
 
@@ -48,6 +48,10 @@ class StudyRunner:
     """Whether earlier results are ignored."""
     cache: Path | None = None
     """Where results are kept; by default the user's cache folder."""
+    computed: set[str] = field(default_factory=set, compare=False)
+    """Cases that were computed until now, by their id."""
+    from_cache: set[str] = field(default_factory=set, compare=False)
+    """Cases whose outcomes an earlier validation left."""
 
     def outcomes(self, tables: Mapping[str, Sequence[Study]], folder: Path, progress: Progress) -> Iterator[tuple[str, Studies]]:
         """Each table, as soon as it is complete, with the outcome of every run of its studies; equal cases are run once.
@@ -74,6 +78,7 @@ class StudyRunner:
         if not self.fresh:
             stored = {case_id: self._stored(case_id) for case_id in set(identities.values())}
             outcomes = {case_id: outcome for case_id, outcome in stored.items() if outcome is not None}
+            self.from_cache.update(outcomes.keys() - self.computed)
         pending = dict(tables)
 
         def complete() -> Iterator[tuple[str, Studies]]:
@@ -86,6 +91,7 @@ class StudyRunner:
         waiting = {identities[key]: task for key, task in reversed(tasks.items()) if identities[key] not in outcomes}
         for case_id, outcome in self._computed(dict(reversed(waiting.items())), progress):
             outcomes[case_id] = outcome
+            self.computed.add(case_id)
             self._store(outcome)
             yield from complete()
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.dataset.cost import cost_of
 from tactsim.dataset.sampling.drawing import Drawn, drawn_specimen, noise_generator, used_seed
 from tactsim.dataset.sampling.layout import Layout, layout_of, split_of
 from tactsim.dataset.sampling.sweep import Sweep, sweep_of_text
@@ -86,12 +87,12 @@ def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -
 
 
 def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str, Any]]:
-    """Status, reason, and readings and warnings of one case; whatever goes wrong in it is the reason of this sample alone."""
+    """Status, reason, and readings, cost and warnings of a case; whatever goes wrong in it is the reason of this sample alone."""
     assert drawn.case is not None
     try:
         result = drawn.case.experiment.run(None, time_limit=sweep.settings.time_limit)
         if result.status is not Status.CONVERGED:
-            return FAILED, f"{result.status}: {result.reason}", {}
+            return FAILED, f"{result.status}: {result.reason}", cost_of(result)
         readings = layout.recorder.readings(drawn.case.experiment, result, noise_generator(sweep, drawn.sample))
         values = numbers_of(layout.recorder, result) | readings
         _check(values, layout)
@@ -102,7 +103,7 @@ def _run(sweep: Sweep, layout: Layout, drawn: Drawn) -> tuple[int, str, dict[str
     except Exception as error:  # noqa: BLE001  a defect in a kind of the user's own ends no other sample
         return FAILED, f"{type(error).__name__}: {error}; from {place_of(error)}", {}
     warnings = "\n".join(map(one_line, result.warnings))[:LONGEST_WARNINGS]
-    return DONE, result.reason, {**values, "warnings": warnings}
+    return DONE, result.reason, {**cost_of(result), **values, "warnings": warnings}
 
 
 def _check(values: dict[str, Array], layout: Layout) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 from tactsim.code_identity import code_identity
 from tactsim.dataset.running.run import SweepRun, Tally
 from tactsim.dataset.sampling.layout import Layout, layout_of
-from tactsim.dataset.sampling.stored import attributes_of, attributes_of_sweep, check_same, stored_sweep
+from tactsim.dataset.sampling.stored import attributes_of, attributes_of_sweep, check_same, layout_within, stored_sweep
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import FAILED, META, earlier_words, wrong_arrays
 from tactsim.dataset.store.blocks import JOURNAL, Journal
@@ -93,6 +93,7 @@ def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_c
     _check_code(store, accept_changes)
     refuse_links(place)
     Journal(place / JOURNAL).refuse_foreign()
+    layout = layout_within(store, layout)
     store = _put_right(sweep, layout, store)
     run = _run(sweep, layout, store)
     run.recover()

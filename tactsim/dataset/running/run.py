@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from tactsim.array import Array
+from tactsim.dataset.cost import COST, slow_lines
 from tactsim.dataset.running.computing import computed
 from tactsim.dataset.running.executors import Executor, TaskOutcome
 from tactsim.dataset.sampling.layout import Layout
@@ -32,8 +32,6 @@ FOLD_SAMPLES = 1024
 """The journal is folded into the arrays after so many seconds or samples, whichever is first."""
 LOSSES_IN_A_ROW = 30
 """Lost tasks in a row, none coming back between them, after which the workers themselves must be at fault."""
-SLOWEST, WORTH_A_LINE = 3, 1.0
-"""How many of the slowest samples are named, and the time in s that one of them must have taken."""
 MOST_KINDS = 20
 """Reasons of failures, and warnings, that are listed at the end."""
 MOST_LOSSES = 3
@@ -58,20 +56,21 @@ class Tally:
     """How many samples these are in all."""
     retried: int = 0
     """How many samples are computed again because the time of an earlier run did not suffice."""
-    times: list[Array] = field(default_factory=list)
-    """Of the samples of each block (k, 2): their numbers, and wall times in s."""
+    costs: list[Block] = field(default_factory=list)
+    """Of the samples of each block: their numbers, wall times and cost."""
 
-    def timed(self, samples: Array, seconds: Array) -> None:
-        """Notes how long new samples (n,) took in s, (n,)."""
-        self.times.append(np.column_stack([samples, seconds]))
+    def timed(self, block: Block) -> None:
+        """Notes how long new samples took, and what they cost."""
+        self.costs.append({name: block[name] for name in ("sample", "wall_time", *COST)})
 
-    def add(self, warnings: list[str], reasons: list[str]) -> None:
-        """Counts new samples: by the warnings of each that is done, and by the reasons of those that failed."""
+    def add(self, warnings: dict[int, str], reasons: dict[int, str]) -> None:
+        """Counts new samples: by the warnings of each that is done, and by the reasons of those that failed, by their numbers."""
         self.done += len(warnings)
         self.failed += len(reasons)
-        for text in warnings:
-            self.warned.update_of_one(text.splitlines())
-        self.reasons.update(reasons)
+        for sample, text in warnings.items():
+            self.warned.add(sample, text.splitlines())
+        for sample, text in reasons.items():
+            self.reasons.add(sample, [text])
 
     @property
     def rate(self) -> float:
@@ -93,18 +92,18 @@ class Tally:
         lines = [f"{self.done} {noun} done, {self.failed} failed in {rough_time(seconds)} ({_per_time(self.rate)})"]
         if self.before:
             lines.append(f"{self.before} {'sample was' if self.before == 1 else 'samples were'} there before")
-        times = np.concatenate([np.zeros((0, 2)), *self.times])
-        slowest = times[np.argsort(-times[:, 1], kind="stable")[:SLOWEST]]
-        if (slowest[:, 1] > WORTH_A_LINE).any():
-            slow = ", ".join(f"{taken:.3g} s (sample {number:.0f})" for number, taken in slowest)
-            lines.append(f"a sample took {np.median(times[:, 1]):.3g} s in the median; the slowest {slow}")
+        if self.costs:
+            lines += slow_lines({name: np.concatenate([block[name] for block in self.costs]) for name in self.costs[0]})
         if self.retried:
             lines.append(f"{self.retried} samples for which the time did not suffice before were computed again")
         if self.damaged:
             lines.append(f"{self.again} samples were there and damaged; they were marked pending, to be computed again:")
             lines += [f"  {count} x {one_line(reason, 160)}" for reason, count in self.damaged.items()]
-        lines += [f"  {count} x {one_line(reason)}" for reason, count in self.reasons.most_common(MOST_KINDS)]
-        return lines + [f"  {count} x warning: {one_line(words)}" for words, count in self.warned.most_common(MOST_KINDS)]
+        counted = [
+            (one, f"failed: {one_line(one.text)}", self.done + self.failed) for one in self.reasons.most_common(MOST_KINDS)
+        ]
+        counted += [(one, f"warning: {one_line(one.text)}", self.done) for one in self.warned.most_common(MOST_KINDS)]
+        return lines + [f"  {one.of(samples)}: {words}" for one, words, samples in counted]
 
 
 def _per_time(rate: float) -> str:
@@ -170,10 +169,8 @@ class SweepRun:
         block["code"] = np.full_like(block["code"], self.code)
         self.journal.append(content)
         self.blocks.append(block)
-        self.tally.timed(block["sample"], block["wall_time"])
-        failed = block["status"] == FAILED
-        warnings = [str(text) for text in block["warnings"][block["status"] == DONE]]
-        self.tally.add(warnings, [str(reason) for reason in block["reason"][failed]])
+        self.tally.timed(block)
+        self.tally.add(_by_sample(block, "warnings", DONE), _by_sample(block, "reason", FAILED))
         waiting = sum(len(block["sample"]) for block in self.blocks)
         if waiting >= FOLD_SAMPLES or time.monotonic() - self.folded > FOLD_SECONDS:
             self.fold()
@@ -236,6 +233,12 @@ class SweepRun:
             content = computed(self.sweep.text, [number], lost=reason, folder=self.sweep.folder)
             self.keep(content, decoded(content))
         return again
+
+
+def _by_sample(block: Block, name: str, status: int) -> dict[int, str]:
+    """Number of each sample of a status -> its text of a name."""
+    these = block["status"] == status
+    return dict(zip(block["sample"][these].tolist(), map(str, block[name][these]), strict=True))
 
 
 def _next_task(todo: deque[tuple[int, ...]], size: int) -> tuple[int, ...]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from tactsim.case.model import Case
+from tactsim.dataset.cost import COST
 from tactsim.dataset.sampling.drawing import drawn_specimen, fault_of
 from tactsim.dataset.sampling.settings import Condition
 from tactsim.dataset.sampling.suitable import check_suitable
@@ -62,7 +63,9 @@ def layout_of(sweep: Sweep) -> Layout:
     recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
     experiment = first_case(sweep).experiment
     _check_times(sweep, recorder, experiment)
-    index, recorded = index_variables(sweep.settings.splits.names), variables_of(recorder, experiment)
+    recorded = variables_of(recorder, experiment)
+    taken = {variable.name for variable in recorded} & COST.keys()  # by a sweep that stores them as quantities
+    index = [variable for variable in index_variables(sweep.settings.splits.names) if variable.name not in taken]
     labels = [variable for variable in recorded if variable.role == "label"]
     readings = [variable for variable in recorded if variable.role == "reading"]
     variables = (*index, *varied_variables(sweep), *labels, *readings)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import json
 import platform
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from tactsim.code_identity import code_identity, installed_versions
+from tactsim.dataset.cost import COST
 from tactsim.dataset.sampling.layout import Layout, layout_of
 from tactsim.dataset.sampling.sweep import Sweep, deciding, sweep_of_text
 from tactsim.dataset.store.arrays import META, parsed_json
@@ -100,6 +102,19 @@ def stored_sweep(store: Store) -> Sweep:
         raise _unusable(store, error) from None
 
 
+def layout_within(store: Store, layout: Layout) -> Layout:
+    """The layout without the cost of samples if an earlier version of tactsim began the store, which did not keep it.
+
+    Raises
+    ------
+    StorageError
+        If the metadata of the store are missing or damaged.
+    """
+    known = {*store.described, *store.faults, *store.missing}
+    kept = (one for one in layout.variables if one.name in known or one.name not in COST or one.role != "index")
+    return replace(layout, variables=tuple(kept))
+
+
 def stored_layout(store: Store) -> tuple[Sweep, Layout]:
     """The sweep of a store and the variables that it stores.
 
@@ -110,7 +125,7 @@ def stored_layout(store: Store) -> tuple[Sweep, Layout]:
     """
     sweep = stored_sweep(store)
     try:
-        return sweep, layout_of(sweep)
+        return sweep, layout_within(store, layout_of(sweep))
     except Unreadable as error:
         advice = f"{error}; files that a sweep names are looked for beside the store and in the working folder: run tactsim there"
         raise StorageError(f"{one_line(store.path)}: {advice}") from None

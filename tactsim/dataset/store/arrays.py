@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.dataset.cost import COST, cost_variables
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.outside import json_text
@@ -137,7 +138,7 @@ def described(folder: Path, name: str) -> ArrayDescription:
 
 def index_fault(array: ArrayDescription, samples: int, per_chunk: int) -> str:
     """What is wrong with an array beside the others of its store, empty if nothing is."""
-    known: dict[str, Variable] = {variable.name: variable for variable in index_variables(())}
+    known = {variable.name: variable for variable in index_variables(()) if variable.name not in COST}  # may be readings
     if array.name in known and (array.dtype, array.shape[1:]) != (known[array.name].dtype, known[array.name].sizes):
         expected = known[array.name]
         return f"{array.dtype} of shape {array.shape}; expected: {expected.dtype} of shape {(samples, *expected.sizes)}"
@@ -226,6 +227,7 @@ def index_variables(splits: tuple[str, ...]) -> list[Variable]:
         Variable("seed", "1", "seed of the noise of the sample, where it has noise", "index", dtype="uint64"),
         Variable("redraws", "1", "draws of the specimen that were refused before", "index", dtype="uint32"),
         Variable("wall_time", "s", "time that the sample took", "index"),
+        *cost_variables(),
         Variable("case_id", "1", "hash of the sample's resolved case", "index", dtype="str"),
         Variable("code", "1", "which entry of the attribute codes computed the sample", "index", dtype="uint8"),
         Variable("checksum", "1", "SHA-256 of the sample's other variables", "index", ("byte",), (CHECKSUM_BYTES,), "uint8"),

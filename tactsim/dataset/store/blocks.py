@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from tactsim.array import Array
+from tactsim.dataset.cost import COST
 from tactsim.dataset.store.arrays import CHECKSUM_BYTES
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
@@ -21,8 +22,8 @@ from tactsim.storage.files import naming, sync
 
 Block = dict[str, Array]
 """Variable -> values (samples in the block, ...); ``sample`` holds the numbers of the samples."""
-NOT_SUMMED = ("checksum", "wall_time", "code")
-"""What may differ between two runs of the same sample, or is the sum itself."""
+NOT_SUMMED = ("checksum", "wall_time", "code", *COST)
+"""Of the index: what may differ between two runs of the same sample, is the sum itself, or is missing in earlier stores."""
 JOURNAL = ".journal"
 """File in a store with blocks that are computed but not yet in its arrays."""
 HEAD = struct.Struct("<8sQ32s")
@@ -70,7 +71,7 @@ def checksum(sample: dict[str, Array], variables: Iterable[Variable]) -> Array:
     """SHA-256 (32,) over name, type and bytes of every variable of one sample, in the order of the names."""
     summed = hashlib.sha256()
     for variable in sorted(variables, key=lambda variable: variable.name):
-        if variable.name in NOT_SUMMED:
+        if variable.role == "index" and variable.name in NOT_SUMMED:
             continue
         summed.update(variable.name.encode() + b"\0")
         value = sample[variable.name]

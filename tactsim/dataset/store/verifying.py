@@ -280,7 +280,8 @@ def waiting_in_journal(store: Store) -> Array:
 def stored_variables(store: Store) -> Iterator[Variable]:
     """The variables of a store as far as checksums need them."""
     for name, array in store.described.items():
-        yield Variable(name, array.attributes["units"], "", "index", sizes=array.shape[1:], dtype=array.dtype)
+        about = array.attributes
+        yield Variable(name, about["units"], "", about["role"], sizes=array.shape[1:], dtype=array.dtype)
 
 
 def _was_left_out(store: Store, name: str, sample: int) -> bool:

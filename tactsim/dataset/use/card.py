@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from tactsim.dataset.cost import slow_lines
 from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.settings import Splits
 from tactsim.dataset.sampling.sweep import Sweep
@@ -17,6 +18,7 @@ from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import refuse_redescribed
 from tactsim.dataset.use.counts import (
+    costs_of,
     empty_splits,
     failures,
     never_drawn,
@@ -108,6 +110,8 @@ def _how(store: Store, sweep: Sweep) -> list[str]:
         f"Draws whose case is impossible are drawn again: {draws} draws of {specimens} specimens were refused.",
         f"Computed by tactsim {plain(', '.join(attributes['codes']))}; {versions}.",
         "",
+        *(plain(line) if line[0] != " " else f"- {plain(line.strip())}" for line in slow_lines(costs_of(store))),
+        "",
     ]
 
 
@@ -119,10 +123,10 @@ def _counts(store: Store, sweep: Sweep) -> list[str]:
     if sweep.per_specimen > 1 and (apart := sweep.settings.splits.out_of_distribution):
         lines += [f"One sample that satisfies the rule of {' or '.join(apart)} takes all samples of its specimen there.", ""]
     lines += [*map(plain, never_drawn_lines(store, sweep)), *empty_split_lines(counts, sweep.settings.splits), ""]
-    failed = [(reason, str(count)) for reason, count in failures(store)]
-    warned = [(words, str(count)) for words, count in warnings_of(store)]
-    lines += _table("Failures", ("reason", "samples"), failed) if failed else []
-    return lines + (_table("Warnings of samples that are done", ("warning", "samples"), warned) if warned else [])
+    failed = [(one.text, str(one.count), one.which) for one in failures(store)]
+    warned = [(one.text, str(one.count), one.which) for one in warnings_of(store)]
+    lines += _table("Failures", ("reason", "samples", "first"), failed) if failed else []
+    return lines + (_table("Warnings of samples that are done", ("warning", "samples", "first"), warned) if warned else [])
 
 
 def absent_lines(store: Store, sweep: Sweep) -> list[str]:
@@ -202,7 +206,7 @@ def _limits(stated: str) -> list[str]:
     return [
         "## Known limits",
         *(f"- {line}" for line in GENERAL_LIMITS),
-        *(f"- {plain(line)}" for line in stated.splitlines() if line.strip()),
+        *(f"- {plain(line.strip())}" for line in stated.splitlines() if line.strip()),
         "",
     ]
 
@@ -225,8 +229,10 @@ def description(path: str | Path) -> str:
     lines = [one_line(attributes["title"] or path), f"  {one_line(attributes['description'])}"]
     lines += [f"  licence {one_line(attributes['license'], 80)}, sweep {one_line(attributes['sweep_id'], 80)}"]
     lines += [*status_lines(store), *(f"  {name:<28} {count}" for name, count in split_counts(store).items())]
-    lines += [f"  {count} x {reason}" for reason, count in failures(store)]
-    lines += [f"  {count} x warning: {words}" for words, count in warnings_of(store)]
+    counts = status_counts(store)
+    lines += [f"  {one.of(counts['done'] + counts['failed'])}: failed: {one.text}" for one in failures(store)]
+    lines += [f"  {one.of(counts['done'])}: warning: {one.text}" for one in warnings_of(store)]
+    lines += [f"  {line}" for line in slow_lines(costs_of(store))]
     lines += aligned(variable_rows(store), left=4, indent="  ")
     return "\n".join([*lines, *(f"  {one_line(name):<36} is gone; tactsim data check says more" for name in store.missing)])
 

@@ -6,12 +6,14 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from tactsim.array import Array
+from tactsim.dataset.cost import COST
 from tactsim.dataset.sampling.settings import Splits
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import waiting_in_journal
-from tactsim.dataset.text_counts import LONGEST_WARNING, TextCounts
+from tactsim.dataset.text_counts import LONGEST_WARNING, CountedText, TextCounts
 from tactsim.errors import StorageError, shown
 from tactsim.outside.text import one_line
 
@@ -47,6 +49,13 @@ def split_counts(store: Store) -> dict[str, int]:
     split, status = store.read("split"), store.read("status")
     names = one_line(store.described["split"].attributes.get("flag_meanings", "")).split()
     return {name: int(((split == number) & (status == DONE)).sum()) for number, name in enumerate(names)}
+
+
+def costs_of(store: Store) -> dict[str, Array]:
+    """Numbers (n,) of the computed samples, their wall times in s and what is known of their cost."""
+    computed = np.flatnonzero(store.read("status") != PENDING)
+    known = [name for name in ("wall_time", *COST) if name in store.described]
+    return {"sample": computed} | {name: store.read(name, computed) for name in known}
 
 
 def empty_splits(counts: Mapping[str, int], splits: Splits) -> list[str]:
@@ -89,23 +98,25 @@ def never_drawn(store: Store, sweep: Sweep) -> list[tuple[str, str, float]]:
     return absent
 
 
-def failures(store: Store) -> list[tuple[str, int]]:
-    """Reasons of failed samples, those that differ in their numbers only as one, with counts, the most frequent first."""
+def failures(store: Store) -> list[CountedText]:
+    """Reasons of failed samples, those that differ in their numbers only as one, with their samples, the most frequent first."""
     failed = np.flatnonzero(store.read("status") == FAILED)
     reasons = TextCounts()
-    reasons.update(one_line(reason) for reason in store.read("reason", failed))
+    for sample, reason in zip(failed.tolist(), store.read("reason", failed), strict=True):
+        reasons.add(sample, [one_line(reason)])
     return _first(reasons, "other reasons")
 
 
-def warnings_of(store: Store) -> list[tuple[str, int]]:
-    """Warnings of samples that are done, with the number of samples, the most frequent first."""
+def warnings_of(store: Store) -> list[CountedText]:
+    """Warnings of samples that are done, with their samples, the most frequent first."""
     counts = TextCounts(LONGEST_WARNING)
-    for text in store.read("warnings", np.flatnonzero(store.read("status") == DONE)):
-        counts.update_of_one(map(one_line, str(text).splitlines()))
+    done = np.flatnonzero(store.read("status") == DONE)
+    for sample, text in zip(done.tolist(), store.read("warnings", done), strict=True):
+        counts.add(sample, map(one_line, str(text).splitlines()))
     return _first(counts, "other warnings")
 
 
-def _first(counts: TextCounts, others: str) -> list[tuple[str, int]]:
-    pairs = counts.most_common()
-    rest = sum(count for _, count in pairs[MOST_REASONS:])
-    return pairs[:MOST_REASONS] + ([(others, rest)] if rest else [])
+def _first(counts: TextCounts, others: str) -> list[CountedText]:
+    texts = counts.most_common()
+    rest = sum(one.count for one in texts[MOST_REASONS:])
+    return texts[:MOST_REASONS] + ([CountedText(others, rest)] if rest else [])

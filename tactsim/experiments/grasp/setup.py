@@ -21,6 +21,7 @@ from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
 from tactsim.mechanics.models.any_block_source import AnyBlockSource, AnySource, AutomaticSource
+from tactsim.mechanics.models.block_source import TOUCHING
 from tactsim.mechanics.paths.loading import AnyLoading, check_periods
 from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion_name
 from tactsim.model import FrozenModel
@@ -203,7 +204,7 @@ class GraspSetup(FrozenModel):
         except InvalidQuantity as error:
             names = [f"{inclusion_name(number, shape)} " for number, shape in enumerate(self.shapes, 1)]
             blamed = [f"inclusions.{k}.shape: " for k, name in enumerate(names) if str(error).startswith(name)]
-            raise ValueError(f"{''.join(blamed)}{error}") from None
+            raise ValueError(f"{''.join(blamed)}{error}{self._nearer()}") from None
         for number, embedded in enumerate(self.inclusions, 1):
             name, hollow = inclusion_name(number, embedded.shape), embedded.shape.hollow
             if embedded.lumen is not None and not hollow:
@@ -211,6 +212,14 @@ class GraspSetup(FrozenModel):
         if (misfit := self.mesh.misfit(self.block.size, self.shapes, self.flats)) is not None:
             raise ValueError(f"mesh.kind: {misfit}; take kind: tetrahedra")
         return self
+
+    def _nearer(self) -> str:
+        """What lets inclusions be nearer to each other and to faces, if a smaller distance is all that they need."""
+        try:
+            check_inclusions(np.array(self.block.size), self.shapes, TOUCHING)
+        except InvalidQuantity:
+            return ""
+        return f", {self.mesh.nearer}" if self.mesh.nearer else ""
 
     @model_validator(mode="after")
     def _jaws_meet_the_block(self) -> Self:

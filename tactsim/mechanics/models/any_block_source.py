@@ -27,6 +27,7 @@ class AutomaticSource(BlockSource):
         "take a smaller edge_size at the edges of the jaws, a smaller inclusion_size at an inclusion, both under mesh.graded, or "
         "mesh.tetrahedra where these are taken"
     )
+    nearer: ClassVar[str] = "less with a smaller inclusion_size under mesh.graded, or mesh.tetrahedra where these are taken"
     kind: Literal["automatic"] = "automatic"
     graded: GradedSource = GradedSource()
     """The cells around spheres, ellipsoids and tubes."""

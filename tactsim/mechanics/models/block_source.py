@@ -53,6 +53,8 @@ class BlockSource(FrozenModel):
 
     finer: ClassVar[str] = "take a smaller mesh.edge_size at the edges of the jaws, a smaller mesh.inclusion_size at an inclusion"
     """What makes elements smaller where they lose their volume, in the words of the case."""
+    nearer: ClassVar[str] = ""
+    """What lets inclusions be nearer to each other and to faces, in the words of the case; empty if nothing does."""
 
     def misfit(self, size: Size, inclusions: Sequence[Inclusion], flats: Sequence[Array] = ()) -> str | None:
         """The kind, and why its mesh cannot follow the inclusions in a block of this size in m, between jaws that have these
@@ -67,6 +69,7 @@ class BlockSource(FrozenModel):
 class SizedSource(MesherSettings, BlockSource):
     """Elements by the lengths of their edges."""
 
+    nearer: ClassVar[str] = "less with a smaller mesh.inclusion_size"
     usual: ClassVar[dict[str, float]] = {"size": 3.3e-3, "inclusion_size": 2.6e-3}
     """Edge lengths in m that a case leaves out, in a block whose sides are `FULL_SIDE` at least."""
     size: Positive[Length] | None = None

@@ -31,6 +31,8 @@ LEAST_QUALITY, LEAST_STRETCHED = 0.02, 0.002
 
 Why the second: cells that are thin in two directions at the edge of a flat and as long as elsewhere along it are meant to be so,
 and cut out of bricks they keep the largest angle that interpolation asks of them (Apel 1999, as in `graded.block`)."""
+SMALLER = "take smaller elements"
+"""What to do about a volume that is missed."""
 LEAST_UNSTRETCHED = 0.3
 """Mean ratio above which a tetrahedron is well shaped apart from such a stretch; one of six of a brick has 0.76."""
 
@@ -155,8 +157,7 @@ def check(block: BlockMesh, size: Array) -> None:
     for name, error in zip(block.region_names, block.volume_errors, strict=True):
         if not abs(error) <= VOLUME_TOLERANCE:
             raise ConvergenceError(
-                f"the mesh of {name} misses its volume by {100 * error:.2g} %; allowed: {100 * VOLUME_TOLERANCE:g} %; "
-                "take smaller elements"
+                f"the mesh of {name} misses its volume by {100 * error:.2g} %; allowed: {100 * VOLUME_TOLERANCE:g} %; {SMALLER}"
             )
     for name, axis, end in FACES:
         facets = block.facets[name]

@@ -21,7 +21,7 @@ from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
 from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
 from tactsim.mesh.block import SIZES, BlockMesh, BlockMeshSettings
-from tactsim.mesh.fitting.curving import fitted
+from tactsim.mesh.fitting.curving import SMALLER, fitted
 from tactsim.mesh.graded.beside_jaws import Footprint, footprint_of, widened
 from tactsim.mesh.graded.bricks import brick_cells, bricks_of, check_apart
 from tactsim.mesh.graded.cells import LEAST_LAYERS, Cells, Layering, from_boxes, layer_ends, with_lump
@@ -32,9 +32,12 @@ from tactsim.mesh.graded.sections import Hollow, as_hollow, leading_axis
 from tactsim.mesh.graded.side_by_side import Bundle, bundle_of
 from tactsim.mesh.structured_block import SIDES, grid, halved_sides, product, ranks
 from tactsim.mesh.tetrahedra import mesh_key
+from tactsim.units import format_quantity
 
 ATTEMPTS = 3
 """Numbers of cells across that are tried, each larger than the last and with ever fewer layers, until the shapes suit."""
+LONG = 5.0
+"""Length over width from which on short cells along a lump are flat across it: larger ones suit it better."""
 
 
 def graded_block(
@@ -79,7 +82,20 @@ def graded_block(
             reason = error
     names = " and ".join(inclusion_name(number, inclusion) for number, inclusion in enumerate(inclusions, 1))
     verb = "suit" if len(inclusions) == 1 else "suit all of"
-    raise ConvergenceError(f"no graded cells {verb} {names}: {reason}; take mesh.kind: tetrahedra")
+    why = str(reason).removesuffix(f"; {SMALLER}")
+    raise ConvergenceError(f"no graded cells {verb} {names}: {why}; take {_other_sizes(inclusions, extent)}mesh.kind: tetrahedra")
+
+
+def _other_sizes(inclusions: Sequence[Inclusion], extent: Array) -> str:
+    """Sizes of cells in words by which bent tubes and long lumps in a block of ``extent`` (3,) in m may suit; else empty."""
+    advice = []
+    for number, inclusion in enumerate(inclusions, 1):
+        solids, name = inclusion.solids(extent), inclusion_name(number, inclusion)
+        if (tube := as_hollow(solids)) is not None and np.isfinite(tube.tightest):
+            advice.append(f"a smaller mesh.size for the bends of {name}")
+        elif tube is None and (widths := np.ptp(solids[0].bounds(), axis=0)).max() > LONG * widths.min():
+            advice.append(f"a larger mesh.inclusion_size for the thin {name}")
+    return "".join(f"{words}, " for words in advice) + ("or " if advice else "")
 
 
 def graded_misfit(
@@ -125,8 +141,10 @@ def _between(inclusions: Sequence[Inclusion], footprint: Footprint) -> _Between:
     lumps, tubes = [lump.moved(-footprint.low) for lump in lumps], [tube.moved(-footprint.low) for tube in tubes]
     held = all((lump.bounds[0] >= 0).all() and (lump.bounds[1] <= footprint.size).all() for lump in lumps)
     if not held or not all(tube.leads(axis, footprint.size) for tube in tubes):
+        ends = zip("xy", footprint.low, footprint.high, strict=False)
+        flats = ", ".join(f"{name} {format_quantity(low, 'm')} to {format_quantity(high, 'm')}" for name, low, high in ends)
         raise InputError(
-            "graded cells serve inclusions that lie between the flats of both jaws, or lead from there along an axis"
+            f"graded cells serve inclusions that lie between the flats of both jaws ({flats}), or lead from there along an axis"
         )
     return _Between(footprint, lumps, tubes)
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from thesis_tables import TABLE, write_tables
 from tactsim.cli import main
 from tactsim.results.writing import write_files
 from tactsim.validation import StudyRunner
+from tactsim.validation.execution import Progress, Studies
 
 
 def validate(folder: Path, *arguments: str) -> int:
@@ -100,6 +102,32 @@ def test_a_place_that_is_taken_is_refused_before_computing(tmp_path: Path, capsy
     out, err = capsys.readouterr()
     assert not out, "a table that is printed was computed"
     assert "'thesis.docx', which tactsim did not write" in err
+
+
+@pytest.mark.parametrize(
+    ("computed", "kept", "words"),
+    [
+        (0, 7, "all 7 simulations of the studies are from the cache; --fresh computes them again\n"),
+        (2, 5, "2 simulations were computed, 5 are from the cache; --fresh computes them again\n"),
+        (7, 0, ""),
+    ],
+)
+def test_progress_is_reported_to_a_file_if_asked_for_and_the_cache_is_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], computed: int, kept: int, words: str
+) -> None:
+    def outcomes(self: StudyRunner, tables: dict[str, object], folder: Path, progress: Progress) -> Iterator[tuple[str, Studies]]:
+        progress("1/7 simulations")
+        self.computed.update(map(str, range(computed)))
+        self.from_cache.update(map(str, range(kept)))
+        yield from ((name, {}) for name in tables)
+
+    monkeypatch.setattr(StudyRunner, "outcomes", outcomes)
+    write_tables(tmp_path / "tables")
+    assert validate(tmp_path, "small") == 0
+    printed, noted = capsys.readouterr()
+    assert ("1/7" in noted, "cache" in printed, words in printed) == (False, bool(words), True)
+    assert validate(tmp_path, "small", "--progress") == 0
+    assert "  1/7 simulations\n" in capsys.readouterr().err
 
 
 def test_an_interruption_says_what_is_kept(

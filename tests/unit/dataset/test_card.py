@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
@@ -13,6 +14,8 @@ import pytest
 from drawn import colliding_words, text_of
 from sweeps import TEXT, Inline, run_sweep, sweep_file
 
+import tactsim as ts
+from tactsim.dataset.cost import cost_of
 from tactsim.dataset.figures.card import Spread, spread, taxels
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.layout import layout_of
@@ -20,7 +23,9 @@ from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use import card
 from tactsim.dataset.use.card import _use, card_text
-from tactsim.shipped import CASES
+from tactsim.shipped import CASES, PROGRAM
+
+GALLERY = PROGRAM / "docs/gallery/stored"
 
 
 @pytest.fixture(scope="module")
@@ -46,9 +51,11 @@ def test_what_samples_warn_of_is_counted(tmp_path: Path) -> None:
     with opened_run(sweep, tmp_path / "s.zarr") as going:
         going.compute(Inline(sweep), lambda tally: None)
     stored = Store.open(tmp_path / "s.zarr")
-    counts = dict(card.warnings_of(stored))
+    counts = {one.text: one for one in card.warnings_of(stored)}
     (beyond,) = (words for words in counts if "linear theory" in words)
-    assert counts[beyond] == sum("linear theory" in text for text in stored.read("warnings")) > 0
+    these = [number for number, text in enumerate(stored.read("warnings")) if "linear theory" in text]
+    assert (counts[beyond].count, list(counts[beyond].first)) == (len(these), these[:5])
+    assert these
     assert beyond in card.description(tmp_path / "s.zarr")
     assert "## Warnings of samples that are done" in card_text(stored, sweep, layout_of(sweep))
 
@@ -139,3 +146,27 @@ def test_ticks_of_narrow_ranges_are_not_written_over_each_other() -> None:
         boxes = sorted((box.x0, box.x1) for tick in ticks if (box := tick.label1.get_window_extent()).width > 1)
         assert len(boxes) >= 2
         assert all(first[1] + 4 < second[0] for first, second in pairwise(boxes)), axis.get_title(loc="left")
+
+
+def test_the_card_and_the_description_say_what_the_slowest_samples_cost(tmp_path: Path) -> None:
+    sweep = load_sweep(sweep_file(tmp_path))
+    run_sweep(sweep, tmp_path / "s.zarr")
+    stored = Store.open(tmp_path / "s.zarr", writing=True)
+    steps, *others = np.unique(stored.read("steps")).tolist()
+    assert (steps > 4, others) == (True, []), "the moments of the closed form"
+    stored.array("wall_time")[:] = np.linspace(1, 24, 24)
+    stored.array("unknowns")[23], stored.array("newton_iterations")[23] = 40_000, 31
+    told = f"24 s, sample 23, 40000 unknowns, {steps} steps, 31 Newton iterations"
+    assert f"\n- {told}\n" in card_text(stored, sweep, layout_of(sweep))
+    assert f"    {told}\n" in card.description(tmp_path / "s.zarr")
+
+
+def test_the_cost_of_a_run_is_that_of_its_solver() -> None:
+    result = ts.load_result(GALLERY / "indentation")
+    cost = cost_of(result)
+    assert cost["newton_iterations"] == result.scene.solver.newton_iterations > len(result.steps) == cost["steps"]
+    assert (cost["unknowns"], cost["rejected_steps"]) == (result.scene.solver.unknowns, result.scene.solver.rejected_steps)
+    assert cost["unknowns"] > 1000
+    grasp = ts.load_result(GALLERY / "grasp_lump")
+    stopped = replace(grasp, scene=None, steps=())
+    assert cost_of(stopped) == dict.fromkeys(cost, 0) | {"unknowns": cost_of(grasp)["unknowns"]}

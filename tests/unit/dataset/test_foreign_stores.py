@@ -7,16 +7,22 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 import zarr
-from sweeps import run_sweep, small_store, sweep_file
+from sweeps import TEXT, content, run_sweep, small_store, sweep_file
 
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.checking import check
+from tactsim.dataset.cost import COST
 from tactsim.dataset.sampling.sweep import load_sweep
+from tactsim.dataset.store import blocks
 from tactsim.dataset.store.opening import Store
+from tactsim.dataset.store.verifying import refuse_changed
 from tactsim.dataset.store.writing import set_attributes
+from tactsim.dataset.use.card import description
+from tactsim.dataset.use.counts import costs_of
 from tactsim.errors import StorageError
 
 
@@ -91,6 +97,46 @@ def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(tmp_
     assert f"which did not store {left_out}; it can be read" in finding.words
     with pytest.raises(StorageError, match=f"did not store {left_out}; .*begin anew in another folder"):
         run_sweep(load_sweep(sweep_file(tmp_path)), place, resume=True)
+
+
+@pytest.mark.parametrize("listed", [True, False], ids=["with a list of arrays", "without"])
+def test_a_store_from_before_samples_had_a_cost_is_checked_and_gone_on_with(tmp_path: Path, listed: bool) -> None:
+    place = small_store(tmp_path)
+    for name in COST:
+        shutil.rmtree(place / name)
+    stated = json.loads((place / "zarr.json").read_text())
+    for names in (described := stated["attributes"]["arrays"], stated["consolidated_metadata"]["metadata"]):
+        for name in COST:
+            names.remove(name) if names is described else names.pop(name)
+    if not listed:
+        del stated["attributes"]["arrays"]
+    (place / "zarr.json").write_text(json.dumps(stated))
+    assert check(place).findings == ()
+    run = run_sweep(load_sweep(sweep_file(tmp_path), samples=30), place, resume=True)
+    assert (run.tally.done, run.tally.again) == (6, 0), "nothing that was there is computed again"
+    assert check(place).findings == ()
+    (tmp_path / "whole").mkdir()
+    run_sweep(load_sweep(sweep_file(tmp_path), samples=30), tmp_path / "whole/s.zarr")
+    new, old = content(tmp_path / "whole/s.zarr"), content(place)
+    assert new.keys() - old.keys() == COST.keys()
+    for name, values in old.items():
+        np.testing.assert_array_equal(values, new[name], err_msg=name)
+    assert costs_of(Store.open(place)).keys() == {"sample", "wall_time"}
+    assert description(place)
+
+
+def test_a_quantity_of_the_name_of_a_cost_stays_a_reading(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As of a sweep that stores the unknowns of a grasp as a quantity; a changed value is found by its checksum."""
+    monkeypatch.setitem(COST, "largest_force", "a count")
+    monkeypatch.setattr(blocks, "NOT_SUMMED", (*blocks.NOT_SUMMED, "largest_force"))
+    place = small_store(tmp_path, TEXT.replace("times: 4", "times: 4\n  quantities: {largest_force: N}"))
+    assert load(place)["largest_force"].attrs["role"] == "reading"
+    assert np.isfinite(load(place)["largest_force"].values).all()
+    assert check(place).findings == ()
+    Store.open(place, writing=True).array("largest_force")[3] = 1.0
+    assert [(finding.kind, finding.samples) for finding in check(place).findings] == [("checksum", (3,))]
+    with pytest.raises(StorageError, match=r"1 samples \(3\)"):
+        refuse_changed(Store.open(place), np.arange(24))
 
 
 def test_wrong_names_are_bad_input(kept: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -22,6 +22,7 @@ from sweeps import TEXT, compute_once_here, sweep_file
 from tactsim.cli import main
 from tactsim.dataset import TorchSamples, checking, load, sample_case
 from tactsim.dataset.checking import check
+from tactsim.dataset.cost import COST
 from tactsim.dataset.running.run import Tally
 from tactsim.dataset.sampling.layout import Layout, layout_of
 from tactsim.dataset.sampling.stored import stored_layout
@@ -30,7 +31,7 @@ from tactsim.dataset.store.arrays import DONE, FAILED, index_variables
 from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.verifying import ChunkRead
-from tactsim.dataset.text_counts import TextCounts
+from tactsim.dataset.text_counts import CountedText, TextCounts
 from tactsim.dataset.use.card import description
 from tactsim.dataset.use.counts import failures
 from tactsim.errors import InputError, StorageError, UnknownName
@@ -306,40 +307,60 @@ def test_bad_options_are_refused(tmp_path: Path, options: list[str], words: str,
 def test_progress_reports_rate_time_left_and_reasons() -> None:
     tally = Tally(samples=100, before=10, begin=time.monotonic() - 10)
     assert tally.line() == "10 of 100 samples, 0 failed; computing the first for 10 s"
-    tally.add([*["the tissue buckles\nthe mesh is coarse"] * 2, *[""] * 16], ["stopped at 3.5e-2 mm", "stopped at 7 mm"])
+    warned = dict.fromkeys([40, 12], "the tissue buckles\nthe mesh is coarse") | dict.fromkeys(range(50, 66), "")
+    tally.add(warned, {70: "stopped at 3.5e-2 mm", 3: "stopped at 7 mm"})
     assert tally.line() == "30 of 100 samples, 2 failed, 2 samples/s, 35 s left"
     one = Tally(samples=2, before=1, begin=time.monotonic() - 10)
-    one.add([""], [])
+    one.add({1: ""}, {})
     assert one.summary()[:2] == ["1 sample done, 0 failed in 10 s (360 samples/h)", "1 sample was there before"]
     lines = tally.summary()
     assert lines[0] == "18 samples done, 2 failed in 10 s (2 samples/s)"
-    assert lines[2] == "  2 x stopped at 0.035 to 7 mm"
-    assert {*lines[3:]} == {"  2 x warning: the tissue buckles", "  2 x warning: the mesh is coarse"}
+    assert lines[2] == "  2 of 20 samples (3, 70): failed: stopped at 0.035 to 7 mm"
+    warnings = {"the tissue buckles", "the mesh is coarse"}
+    assert {*lines[3:]} == {f"  2 of 18 samples (12, 40): warning: {words}" for words in warnings}
+
+
+def count_of(counts: TextCounts, texts: list[str]) -> None:
+    """Counts texts, each of a sample of its own."""
+    for sample, text in enumerate(texts):
+        counts.add(sample, [text])
+
+
+def texts_of(counts: TextCounts) -> list[tuple[str, int]]:
+    """The texts with their counts."""
+    return [(one.text, one.count) for one in counts.most_common()]
 
 
 def test_reasons_that_differ_in_their_numbers_count_as_one_and_keep_them() -> None:
     counts = TextCounts()
-    counts.update(["took longer than the 8 s that it was given"] * 3)
-    counts.update(
-        f"touch {touch} was not reached within {depth} mm" for touch, depth in ((1, "1.4"), (12, "0.9"), (3, "1.23456789"))
-    )
-    counts.update(["stopped: #1", "no numbers"])
-    assert counts.most_common() == [
+    depths = ((1, "1.4"), (12, "0.9"), (3, "1.23456789"))
+    touches = [f"touch {touch} was not reached within {depth} mm" for touch, depth in depths]
+    count_of(counts, ["took longer than the 8 s that it was given"] * 3 + touches + ["stopped: #1", "no numbers"])
+    assert texts_of(counts) == [
         ("took longer than the 8 s that it was given", 3),
         ("touch 1 to 12 was not reached within 0.9 to 1.4 mm", 3),
         ("stopped: #1", 1),
         ("no numbers", 1),
     ]
     assert counts.most_common(1) == counts.most_common()[:1]
-    long = TextCounts()
-    long.update([f"{number} " + 200 * "x" + f" {number}" for number in (1, 2)])
-    assert long.most_common() == [("1 to 2 " + 158 * "x", 2)]
-    cut = TextCounts()
-    cut.update([159 * "x" + "1", 160 * "x" + "2", 160 * "x" + "3"])
-    assert cut.most_common() == [(160 * "x", 2), (159 * "x" + "1", 1)]
-    ranges = TextCounts()
-    ranges.update(["0.2% (ratios of 0.85 to 1.12)", "0.3% (ratios of 0.86 to 1.11)"])
-    assert ranges.most_common() == [("0.2 to 0.3% (ratios of 0.85 to 1.12)", 2)], "not 0.85 to 0.86 to 1.11 to 1.12"
+    count_of(long := TextCounts(), [f"{number} " + 200 * "x" + f" {number}" for number in (1, 2)])
+    assert texts_of(long) == [("1 to 2 " + 158 * "x", 2)]
+    count_of(cut := TextCounts(), [159 * "x" + "1", 160 * "x" + "2", 160 * "x" + "3"])
+    assert texts_of(cut) == [(160 * "x", 2), (159 * "x" + "1", 1)]
+    count_of(ranges := TextCounts(), ["0.2% (ratios of 0.85 to 1.12)", "0.3% (ratios of 0.86 to 1.11)"])
+    assert texts_of(ranges) == [("0.2 to 0.3% (ratios of 0.85 to 1.12)", 2)], "not 0.85 to 0.86 to 1.11 to 1.12"
+
+
+def test_a_text_names_the_first_samples_that_have_it_in_whatever_order_they_come() -> None:
+    counts = TextCounts()
+    for sample in (90, 40, 3, 71, 12, 88, 5):
+        counts.add(sample, ["a film creeps by 2 %", "a film creeps by 3 %"])
+    (one,) = counts.most_common()
+    assert one.of(100) == "7 of 100 samples (3, 5, 12, 40, 71, ...)"
+    assert one.of(7) == "all 7 samples"
+    assert CountedText("", 2, (4, 9)).of(3) == "2 of 3 samples (4, 9)"
+    assert CountedText("", 1, (4,)).of(1) == "1 of 1 samples (4)"
+    assert CountedText("other warnings", 12).of(3) == "12 times", "a sample may have several of them"
 
 
 def test_the_description_and_the_card_say_the_numbers_of_failures(store: Path) -> None:
@@ -347,17 +368,29 @@ def test_the_description_and_the_card_say_the_numbers_of_failures(store: Path) -
     for number in (3, 4, 5):
         opened.group["status"][number] = FAILED
         opened.group["reason"][number] = "took longer than the 8 s that it was given"
-    assert failures(Store.open(store)) == [("took longer than the 8 s that it was given", 3)]
-    assert "  3 x took longer than the 8 s that it was given" in description(store)
+    assert failures(Store.open(store)) == [CountedText("took longer than the 8 s that it was given", 3, (3, 4, 5))]
+    assert "  3 of 24 samples (3, 4, 5): failed: took longer than the 8 s that it was given" in description(store)
+
+
+def timed(samples: list[int], seconds: list[float]) -> dict[str, np.ndarray]:
+    """What a tally reads of a block of samples that took so long and solved nothing."""
+    return {"sample": np.array(samples), "wall_time": np.array(seconds)} | {name: np.zeros(len(samples), int) for name in COST}
 
 
 def test_the_slowest_samples_are_named_at_the_end() -> None:
     tally = Tally(samples=6)
-    tally.timed(np.array([3, 4, 5]), np.array([4.0, 63.0, 5.0]))
-    tally.timed(np.array([0, 1]), np.array([6.0, 31.0]))
-    assert "a sample took 6 s in the median; the slowest 63 s (sample 4), 31 s (sample 1), 6 s (sample 0)" in tally.summary()
+    steps = np.ones(3, int)
+    mesh = {"unknowns": np.array([9000, 40000, 9500]), "newton_iterations": np.array([8, 31, 9])}
+    tally.timed(timed([3, 4, 5], [4.0, 63.0, 5.0]) | {"steps": steps, "rejected_steps": steps - 1} | mesh)
+    tally.timed(timed([0, 1], [6.0, 31.0]) | {"rejected_steps": np.array([0, 2])})
+    assert tally.summary()[1:] == [
+        "a sample took 6 s, 9000 unknowns, 1 step, 8 Newton iterations in the median; the slowest:",
+        "  63 s, sample 4, 40000 unknowns, 1 step, 31 Newton iterations",
+        "  31 s, sample 1, 2 rejected steps",
+        "  6 s, sample 0",
+    ]
     quick = Tally(samples=2)
-    quick.timed(np.array([0, 1]), np.array([0.1, 0.2]))
+    quick.timed(timed([0, 1], [0.1, 0.2]))
     assert len(quick.summary()) == 1, "of quick ones it says nothing"
 
 

@@ -50,10 +50,22 @@ def test_equal_cases_run_once_and_what_ended_is_kept(tmp_path: Path, computed: l
     assert [outcome.id for outcome in outcomes["one"]["icf"]] == ["default", "stick"]
     assert outcomes["one"] == outcomes["two"]
     assert computed == [load_case(CASES / STUDY.case, STUDY.overrides(one)).case_id for one in STUDY.runs]
-    assert run(StudyRunner(cache=tmp_path)) == outcomes
+    again = StudyRunner(cache=tmp_path)
+    assert run(again) == outcomes
     assert computed[2:] == [computed[1]], "only the interrupted run is computed again"
-    run(StudyRunner(cache=tmp_path, fresh=True))
+    assert (again.computed, again.from_cache) == ({computed[1]}, {computed[0]})
+    fresh = StudyRunner(cache=tmp_path, fresh=True)
+    run(fresh)
     assert computed[3:] == computed[:2]
+    assert (fresh.computed, fresh.from_cache) == (set(computed[:2]), set())
+
+
+@pytest.mark.usefixtures("computed")
+def test_what_a_validation_computed_for_one_group_is_not_called_kept_in_the_next(tmp_path: Path) -> None:
+    runner = StudyRunner(cache=tmp_path)
+    run(runner)
+    run(runner)
+    assert (len(runner.computed), runner.from_cache) == (2, set())
 
 
 def test_a_broken_cache_is_ignored(tmp_path: Path, computed: list[str]) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 
 import meshio
@@ -292,6 +293,28 @@ def test_what_cannot_be_grasped_is_refused(changes, words):
         return
     with pytest.raises(ValidationError, match=words):
         grasp(**changes)
+
+
+@pytest.mark.parametrize(
+    ("mesh", "words"),
+    [
+        (
+            {"kind": "graded"},
+            r"200 µm from the upper face; allowed: .* inside the block, less with a smaller mesh.inclusion_size$",
+        ),
+        ({"kind": "tetrahedra"}, r"200 µm .* less with a smaller mesh.inclusion_size$"),
+        ({"kind": "automatic"}, r"200 µm .* less with a smaller inclusion_size under mesh.graded, or mesh.tetrahedra where .*$"),
+    ],
+)
+def test_a_body_that_is_only_too_near_is_told_what_lets_it_be(mesh, words):
+    near = BALL | {"radius": 2e-3, "center": (20e-3, 20e-3, 17.8e-3)}
+    with pytest.raises(ValidationError) as refused:
+        grasp(mesh=mesh, inclusions=[{"shape": near, "material": "lump"}])
+    assert re.search(words, refused.value.errors()[0]["msg"])
+    grasp(mesh={"kind": "graded", "inclusion_size": 1.5e-3}, inclusions=[{"shape": near, "material": "lump"}])
+    with pytest.raises(ValidationError) as refused:
+        grasp(mesh=mesh, inclusions=[{"shape": near | {"radius": 3e-3}, "material": "lump"}])
+    assert refused.value.errors()[0]["msg"].endswith("inside the block"), "it protrudes from any mesh"
 
 
 def test_a_body_that_protrudes_is_told_the_distance_that_graded_cells_need():

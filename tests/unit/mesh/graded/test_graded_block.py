@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from lumps import assert_sound, irregular, same_mirrored, write_cells
@@ -17,6 +19,7 @@ from tactsim.mesh.graded.cells import LAYER_GROWTH, LEAST_LAYERS, layer_ends
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.surface import Surface
+from tactsim.mesh.inclusions.tube import Tube
 from tactsim.mesh.mesh_store import content_hash
 
 SIZE = (40e-3, 40e-3, 20e-3)
@@ -128,13 +131,42 @@ def test_what_cannot_be_meshed_is_refused_by_name(tmp_path):
     ):
         graded_block(SIZE, [free], COARSE)
     needle = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(15e-3, 0.2e-3, 0.2e-3))
-    with pytest.raises(ConvergenceError, match=r"no graded cells suit ellipsoid 1: .*; take mesh\.kind: tetrahedra"):
+    words = (
+        r"no graded cells suit ellipsoid 1: .*; take a larger mesh\.inclusion_size for the thin ellipsoid 1, or mesh\.kind: tetra"
+    )
+    with pytest.raises(ConvergenceError, match=words):
         graded_block(SIZE, [needle], COARSE)
     askew = [CENTRED, Sphere(center=(27e-3, 27e-3, 14e-3), radius=3e-3), Sphere(center=(27e-3, 13e-3, 6e-3), radius=3e-3)]
     with pytest.raises(InputError, match="along x, y or z one of each two must end before the other begins"):
         GradedSource(kind="graded").sourced(SIZE, askew)
     with pytest.raises(InvalidQuantity, match="protrudes"):
         graded_block(SIZE, [Sphere(center=(20e-3, 20e-3, 3e-3), radius=5e-3)], COARSE)
+
+
+BENT = Tube(centre_line=((17e-3, 0.0, 10e-3), (24e-3, 20e-3, 12e-3), (17e-3, 40e-3, 8e-3)), inner_radius=2.4e-3, wall=0.6e-3)
+LONG = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(12e-3, 1e-3, 1e-3))
+
+
+@pytest.mark.parametrize(
+    ("inclusions", "words", "better"),
+    [
+        (
+            [LONG],
+            "; take a larger mesh.inclusion_size for the thin ellipsoid 1, or mesh.kind: tetrahedra",
+            {"inclusion_size": 4e-3},
+        ),
+        ([BENT], "allowed: 0.5 %; take a smaller mesh.size for the bends of tube 1, or mesh.kind: tetrahedra", {"size": 3e-3}),
+        ([Sphere(center=(20e-3, 20e-3, 10e-3), radius=6e-3), Sphere(center=(27e-3, 20e-3, 10e-3), radius=0.5e-3)], None, {}),
+    ],
+    ids=["long", "bent", "large and small"],
+)
+def test_a_refusal_names_the_size_of_cells_that_would_suit(inclusions, words, better):
+    """Sizes half or twice as large do suit; where none of those that were tried did, tetrahedra alone are named."""
+    usual = GradedSource().settings(SIZE)
+    with pytest.raises(ConvergenceError, match=re.escape(words or "allowed: 0.02; take mesh.kind: tetrahedra")):
+        graded_block(SIZE, inclusions, usual)
+    if better:
+        graded_block(SIZE, inclusions, usual.model_copy(update=better))
 
 
 def random_pairs(count):
