@@ -21,8 +21,8 @@ SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 SWITCH_OF_HEIGHT = 0.05
 """Length over which a violated contact counts as much as the largest pressure, over the height of the block."""
 FLOWING = 1e-3
-"""Part of its stiffness below which tissue that keeps no more flows: atrial tissue keeps 1e-5. With 0.04 and more, contacts that
-expect forces to grow took fewer steps, and grasps of tissue with 0.0016 led to the end with them only."""
+"""Part of its stiffness below which tissue that keeps no more flows: atrial tissue keeps 1e-5. Of 14 random tissues that keep 1e-4
+to 0.1, a contact that expects forces to grow led 11 to the end, one that goes on with them 7."""
 TOUCH = 0.02
 """First guess of a closing under a force, so that the jaws touch, over the penetration without multipliers."""
 LUMEN = "lumen:"
