@@ -9,7 +9,7 @@ from tactsim.experiments.grasp.drawn_edges import SOFTNESS_SHARE, drawn_radius
 from tactsim.experiments.grasp.lumen_pressure import lumen_history
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.assembly.pressure import FollowerPressure
-from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.materials.viscoelasticity import flows, shear_relaxation
 from tactsim.mechanics.contact.penetration_effect import bonded_block_rate
 from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mechanics.models.pressed_body import PressedBody
@@ -20,9 +20,6 @@ SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
 SWITCH_OF_HEIGHT = 0.05
 """Length over which a violated contact counts as much as the largest pressure, over the height of the block."""
-FLOWING = 1e-3
-"""Part of its stiffness below which tissue that keeps no more flows: atrial tissue keeps 1e-5. Of 14 random tissues that keep 1e-4
-to 0.1, a contact that expects forces to grow led 11 to the end, one that goes on with them 7."""
 TOUCH = 0.02
 """First guess of a closing under a force, so that the jaws touch, over the penetration without multipliers."""
 LUMEN = "lumen:"
@@ -63,8 +60,8 @@ def grasp_intervals(experiment: GraspSetup) -> tuple[TimeInterval, ...]:
 
 def regularisation(experiment: GraspSetup) -> Augmentation:
     """How stiff the contact is."""
-    relaxation = shear_relaxation(experiment.block.tissue)
-    softest = relaxation.instantaneous_modulus
+    tissue = experiment.block.tissue
+    softest = shear_relaxation(tissue).instantaneous_modulus
     softness = min(SOFTNESS * experiment.tolerance, SOFTNESS_OF_HEIGHT * experiment.block.size[2])
     softness = min(softness, max(experiment.tolerance, SOFTNESS_SHARE * drawn_radius(experiment)))
     return Augmentation(
@@ -72,7 +69,7 @@ def regularisation(experiment: GraspSetup) -> Augmentation:
         softest,
         switch_length=SWITCH_OF_HEIGHT * experiment.block.size[2],
         softness=softness,
-        flows=relaxation.equilibrium_modulus < FLOWING * softest,
+        flows=flows(tissue),
     )
 
 

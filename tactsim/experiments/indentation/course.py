@@ -14,8 +14,9 @@ from tactsim.experiments.indentation.setup import Displaced, IndentationSetup, T
 from tactsim.fem.paths.loading import Event, PathFollower
 from tactsim.fem.paths.progress import Headway
 from tactsim.fem.paths.time_steps import TimeEvent
+from tactsim.interfaces import Material
 from tactsim.interfaces.run import Course, Findings
-from tactsim.materials.viscoelasticity import shear_relaxation
+from tactsim.materials.viscoelasticity import FLOWING, flows, shear_relaxation
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.models.pressed_body import PressedBody
 from tactsim.mechanics.models.pressed_model import PressedModel
@@ -173,12 +174,22 @@ class DisplacementPath:
         return state
 
 
+def _stiffness_in_contact(material: Material) -> float:
+    """Shear modulus in Pa that the contact of a material that relaxes begins with.
+
+    Why: a contact as stiff as tissue is at once meets each further point of the surface with a jolt where that tissue flows. With
+    a thousandth, 20 random indentations of atrial tissue took half the time, and three more of them came to their end.
+    """
+    at_once = shear_relaxation(material).instantaneous_modulus
+    return FLOWING * at_once if flows(material) else at_once
+
+
 class HistoryPath:
     """Follows a history of force or displacement; its mesh stays."""
 
     def __init__(self, setup: IndentationSetup, drive: Timed, model: PressedModel):
         self._setup, self._drive, self._model = setup, drive, model
-        stiffest = max(shear_relaxation(material).instantaneous_modulus for material in setup.specimen.materials)
+        stiffest = max(_stiffness_in_contact(material) for material in setup.specimen.materials)
         share = min(1.0, setup.tolerance / (LEAST_PENETRATION * setup.contact_radius))
         start = TimedState.at_rest(model.body, started(setup, model, share * stiffest), 1)
         body = PressedBody(model, by_force=drive.by_force, first_displacement=TOUCH * setup.tolerance)

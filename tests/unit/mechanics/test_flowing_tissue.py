@@ -1,4 +1,4 @@
-"""A grasp with friction of tissue that relaxes to almost nothing at once, whose forces follow the rate of the closing."""
+"""Contact with friction of tissue that relaxes to almost nothing at once, whose forces follow the rate of the closing."""
 
 from __future__ import annotations
 
@@ -8,8 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
-from tactsim.experiments.grasp import path
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.indentation.timed_indentation import TimedIndentation
+from tactsim.materials import viscoelasticity
 from tactsim.results import Result
 from tactsim.results.result import Status
 
@@ -47,5 +48,25 @@ def test_forces_rise_evenly(friction: float, monkeypatch: pytest.MonkeyPatch) ->
     finer = grasped(friction, time={"tolerance": 1e-3})
     assert finer.status is Status.CONVERGED
     np.testing.assert_allclose(forces[-1], forces_of(finer)[-1], rtol=FINER)
-    monkeypatch.setattr(path, "FLOWING", 0.0)  # the mutant: forces expected to grow as they did per distance
+    monkeypatch.setattr(viscoelasticity, "FLOWING", 0.0)  # the mutant: forces expected to grow as they did per distance
     assert grasped(friction).status is Status.FAILED
+
+
+ANNULUS = {
+    "specimen": {"material": "atrial", "thickness": 6.711e-3, "radius": 17.56e-3},
+    "body": {"kind": "annulus", "inner_radius": 2.515e-3, "outer_radius": 4.473e-3, "fillet": 0.2831e-3},
+    "contact": {"kind": "coulomb", "friction": 0.385},
+    "mesh": {"growth": 0.6, "finest": 0.1789e-3},
+    "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 0.3705e-3, "duration": 2.66}]},
+}
+"""A random case whose friction meets further points of the surface all the time."""
+
+
+@pytest.mark.slow
+def test_an_annulus_that_sinks_into_it_comes_to_its_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    result = TimedIndentation.model_validate(ANNULUS).run()
+    assert result.status is Status.CONVERGED
+    forces = forces_of(result)
+    assert all(later > before - EVEN * forces[-1] for before, later in pairwise(forces))
+    monkeypatch.setattr(viscoelasticity, "FLOWING", 0.0)  # the mutant: a contact as stiff as the tissue is at once
+    assert TimedIndentation.model_validate(ANNULUS).run().status is Status.FAILED
