@@ -93,18 +93,22 @@ def objective(logarithms: Array, data: DmaData, form: str = "squared") -> Array:
 
     Source: thesis section 4.5, eq. 4.5.2; errata E22.
     """
-    if form not in FORMS:
-        raise UnknownName("form of the objective", form, FORMS)
+    _check_form(form)
     squares = ((compliance_parts(logarithms, data.frequencies) - data.parts) ** 2).sum(axis=-1)
     return squares.sum(axis=-1) if form == "squared" else np.sqrt(squares).sum(axis=-1)
 
 
+def _check_form(form: str) -> None:
+    if form not in FORMS:
+        raise UnknownName("form of the objective", form, FORMS)
+
+
 def objective_slopes(logarithms: Array, data: DmaData, form: str = "squared") -> Array:
     """Derivatives of ``objective`` by log constants of shape (2n + 1,), of the same shape; raises as that does."""
-    total = objective(logarithms, data, form)
+    _check_form(form)
     misfit = compliance_parts(logarithms, data.frequencies) - data.parts
     halved = np.einsum("kf,kfp->kp", misfit, part_sensitivities(logarithms, data.frequencies))
     if form == "squared":
         return np.asarray(2 * halved.sum(axis=0))
     norms = np.linalg.norm(misfit, axis=1)
-    return np.asarray((halved / np.where(norms > 0, norms, total or 1.0)[:, None]).sum(axis=0))
+    return np.asarray((halved / np.where(norms > 0, norms, 1.0)[:, None]).sum(axis=0))

@@ -65,6 +65,11 @@ class ContactEquilibrium:
     kinematics: Kinematics
     reactions: Array | None = None
 
+    def expecting(self, reached: Sequence[PosedContact]) -> ContactEquilibrium:
+        """This state before a step whose forces are expected to be those of the contacts ``reached`` from it."""
+        both = zip(self.contacts, reached, strict=True)
+        return replace(self, contacts=tuple(replace(contact, growth=there.growth) for contact, there in both))
+
 
 def contact_equilibrium(
     problem: Problem, state: ContactEquilibrium, load: float, guess: Array, action: Action
@@ -148,9 +153,7 @@ def _by_displacement(
         near = state_near(action.force, action.directions, float(np.ptp(problem.body.space.nodes, axis=0).max()), moved, guess)
         if near is None:
             return None
-        both = zip(state.contacts, near.contacts, strict=True)
-        expecting = replace(state, contacts=tuple(replace(contact, growth=there.growth) for contact, there in both))
-        return _equilibrium(problem, expecting, near.load, near.unknowns, action, from_guess=True)
+        return _equilibrium(problem, state.expecting(near.contacts), near.load, near.unknowns, action, from_guess=True)
     except ConvergenceError:
         return None
 

@@ -98,7 +98,7 @@ class _Search:
             self._less = [*self._less[-1:], (self.displacement, force)]
         else:
             self._more = (self.displacement, force)
-        self.displacement = self._between() if self._less and self._more else self._beyond(self.displacement, force)
+        self.displacement = self._between() if self._less and self._more else self._beyond(force)
 
     def _between(self) -> float:
         """A displacement between the two, where a power of it would give the force."""
@@ -107,11 +107,12 @@ class _Search:
         share = math.log(self._force / less) / math.log(more / less)
         return low * (high / low) ** min(max(share, INSIDE), 1 - INSIDE)
 
-    def _beyond(self, displacement: float, force: float) -> float:
-        """A displacement on the other side of the force, by the power of it between the last two that press too little."""
+    def _beyond(self, force: float) -> float:
+        """A displacement on the other side of what presses with this ``force`` in N now, by the power of it between the last two
+        that press too little."""
         power = USUAL
         if len(self._less) > 1:
             (before, less), (after, more) = self._less
             power = math.log(more / less) / math.log(after / before) if more > less and after > before else USUAL
         wanted = (self._force / force) ** (1 / min(max(power, GENTLEST), STEEPEST))
-        return displacement * min(max(wanted, 1 / FARTHER), FARTHER)
+        return self.displacement * min(max(wanted, 1 / FARTHER), FARTHER)

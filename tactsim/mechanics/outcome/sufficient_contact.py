@@ -78,5 +78,4 @@ def _tightened(now: ContactEquilibrium, reached: ContactEquilibrium, error: floa
     old = reached.regularisation
     deepest = max(float(-contact.pair.body.signed_distance(contact.state.points)[0].min()) for contact in reached.contacts)
     tolerance = min(LEAST_TIGHTENING * old.tolerance, sufficient_tolerance(deepest, old.tolerance, error))
-    contacts = tuple(replace(c, growth=r.growth) for c, r in zip(now.contacts, reached.contacts, strict=True))
-    return replace(now, contacts=contacts, regularisation=replace(old, tolerance=tolerance))
+    return replace(now.expecting(reached.contacts), regularisation=replace(old, tolerance=tolerance))

@@ -111,8 +111,9 @@ def _apart_over_misfit(data: DmaData) -> float:
             jac=lambda logarithms: objective_slopes(logarithms, data, form) / scale,
             options={"gtol": SLOPE_SOUGHT, "maxiter": MOST_SEARCHED},
         )
-        if not np.abs(search.jac).max() < SLOPE_LEFT:
-            raise ConvergenceError(f"least {form} objective of 4.5.2: a slope of {np.abs(search.jac).max():.1e} is left")
+        left = float(np.abs(search.jac).max())
+        if not left < SLOPE_LEFT:
+            raise ConvergenceError(f"least {form} objective of 4.5.2: a slope of {left:.1e} is left")
         return compliance_parts(search.x, data.frequencies)
 
     squared, printed = chosen("squared", size**2), chosen("as_printed", size)
