@@ -25,9 +25,9 @@ from tactsim.fem.threads import one_vector_thread
 CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9
 """A residual above this part of the smallest of the four before it, from iteration ``CYCLE_AFTER`` on, is part of a cycle."""
-FORCING, LARGEST_FORCING = 0.5, 1e-2
-"""Error of a linear step over its size, over the residual that it starts from, and at most. In proportion to the residual it
-leaves Newton quadratic (Dembo, Eisenstat & Steihaug 1982, doi:10.1137/0719025). Direct solvers are exact anyway."""
+FORCING = 0.5
+"""Error of a linear step over its size, over the residual that it starts from. In proportion to the residual it leaves Newton
+quadratic (Dembo, Eisenstat & Steihaug 1982, doi:10.1137/0719025). Direct solvers are exact anyway."""
 LARGEST_GROWTH, DISTORTED = 4.0, 0.75
 """A step that multiplies the unbalanced forces by more, and leaves less than this part of the smallest J or more than its inverse
 of the largest, has gone astray and is halved. Forces alone do not say so: where points of a contact change their state, they may
@@ -234,7 +234,8 @@ class _Solution:
     def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:
         """Newton's step of the unknowns, and of the rigid displacement of the interfaces under load control."""
         needed = SHARE_OF_TOLERANCE * self._goal / state.residual
-        accuracy = min(max(FORCING * state.residual, needed, finest_step(self._solver)), LARGEST_FORCING)
+        finest = finest_step(self._solver)
+        accuracy = max(min(max(FORCING * state.residual, needed), self._options.largest_inexactness), finest)
         body, interfaces, control = self._body, self._forces.interfaces, self._forces.load_control
         constraints, solver = self._balance.constraints, self._solver
         data = body.tangent(state.unknowns, state.kinematics)

@@ -22,6 +22,8 @@ class NewtonOptions:
     ``patience`` alone."""
     most_halvings: int = 10
     """Newton gives up when it has halved its steps so often in all: a shorter load step is cheaper."""
+    largest_inexactness: float = 1e-2
+    """Largest error of a linear step over its size, of a solver that iterates; nearer to equilibrium it is less anyway."""
     volume_floor: float = 0.2
     """A step is shortened until no J falls below this part of the smallest J before it."""
     polished: float = 0.1
