@@ -73,8 +73,10 @@ def _prescribed(name: str, condition: AnyCondition, parts: Parts) -> list[Prescr
     if isinstance(condition, ClampCondition):
         return [Translation(name, _unknowns(mesh.dim, facets, axis), 0.0) for axis in range(mesh.dim)]
     if isinstance(condition, RotationCondition):
-        held = mesh.dim == 3 and condition.axial == "held"
-        return _turned(name, condition, parts) + ([Translation(name, _unknowns(mesh.dim, facets, 2), 0.0)] if held else [])
+        turned = _turned(name, condition, parts)
+        if mesh.dim == 2 or condition.axial == "free":
+            return turned
+        return [*turned, Translation(f"{name} along z, axial: held,", _unknowns(mesh.dim, facets, 2), 0.0)]
     return []
 
 

@@ -25,7 +25,7 @@ from tactsim.experiments.boundary_value.geometry import AXES, AnyGeometry, Dimen
 from tactsim.experiments.boundary_value.motions import Held, motions_of
 from tactsim.experiments.boundary_value.parts import Parts
 from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_words
-from tactsim.experiments.boundary_value.symmetry import check_contact, check_load, check_material
+from tactsim.experiments.boundary_value.symmetry import ELSEWHERE, check_contact, check_load, check_material
 from tactsim.interfaces import Material
 from tactsim.materials.any_material import AnyMaterial
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
@@ -205,7 +205,8 @@ class BoundaryValueSetup(FrozenModel):
         try:
             PrescribedMotions([one.motion for one in held], parts.size)
         except InputError as error:
-            raise ValueError(f"conditions: {error}") from None
+            across = f"; {ELSEWHERE}" if any(f"about {plane}" in str(error) for plane in parts.domain.mirrors) else ""
+            raise ValueError(f"conditions: {error}{across}") from None
         if not self.contacts and (free := free_motions(parts, held)):
             raise ValueError(
                 f"conditions: nothing holds the body against {in_words(free)}; prescribe such a displacement of a face or a point"

@@ -93,3 +93,19 @@ def test_a_quarter_gives_a_quarter_of_the_force_of_the_whole():
     fields = {"conditions": [HELD], "contacts": [contact], "asked": asked("contact_force", component="z")}
     quarter, whole = (number(geometry=ROUND | {"part": part}, **fields) for part in ("quarter", "whole"))
     assert 4 * quarter == pytest.approx(whole, rel=1e-5), "penetration, a millionth of the size, over the displacement"
+
+
+def test_a_quarter_of_a_cylinder_is_not_twisted():
+    twisted = [HELD, {"kind": "rotation", "face": "top", "angle": 0.5}]
+    with pytest.raises(ValidationError, match=r"\(rotation\) and the symmetry about x_plane prescribe.*part: whole"):
+        problem("3d", ROUND, conditions=twisted)
+    problem("3d", ROUND | {"part": "whole"}, conditions=twisted)
+
+
+def test_a_face_is_twisted_and_pulled_once_its_heights_are_free():
+    """The message about both names the key that holds the heights."""
+    turned, pulled = {"kind": "rotation", "face": "top", "angle": 0.5}, {"kind": "displacement", "face": "top", "z": 1e-3}
+    whole = ROUND | {"part": "whole"}
+    with pytest.raises(ValidationError, match=r"\(displacement\) and condition 2 \(rotation\) along z, axial: held, prescribe"):
+        problem("3d", whole, conditions=[HELD, turned, pulled])
+    problem("3d", whole, conditions=[HELD, turned | {"axial": "free"}, pulled])
