@@ -38,11 +38,12 @@ def cost_of(result: Result) -> dict[str, int]:
 
 
 def slow_lines(costs: Mapping[str, Array]) -> list[str]:
-    """The median and the slowest samples with their cost, a line each; nothing of samples that are all quick.
+    """The median and the slowest samples with their cost, a line each; nothing if all are quick, or their times are lost.
 
-    ``costs`` are ``sample``, ``wall_time`` in s and those of `COST` that are known, (n,) each; a reading of such a name is none.
+    ``costs`` are ``sample``, ``wall_time`` in s and those of `COST`, as far as they are known, (n,) each; a reading of such a
+    name is none.
     """
-    times = costs["wall_time"]
+    times = costs.get("wall_time", np.zeros(0))
     slowest = np.argsort(-times, kind="stable")[:SLOWEST]
     if not (times[slowest] > WORTH_A_LINE).any():
         return []

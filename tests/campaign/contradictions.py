@@ -96,7 +96,10 @@ def _penetrated(values: dict[str, Any]) -> Iterator[str]:
 def _cut_short(values: dict[str, Any], reason: str, experiment: dict[str, Any]) -> Iterator[str]:
     """An end before the displacement that a case asks for."""
     if experiment.get("kind") == "grasp" and experiment["loading"]["control"] == "displacement":
-        asked = experiment["loading"]["pieces"][-1]["to"]
+        pieces = [piece for piece in experiment["loading"]["pieces"] if piece["kind"] != "hold"]
+        if "to" not in pieces[-1]:  # a sine, whose end its frequency says to four digits only
+            return
+        asked = pieces[-1]["to"]
     elif experiment.get("kind") in ("indentation", "indentation_3d") and reason == "displacement reached":
         asked = experiment["displacement"]
     else:

@@ -11,12 +11,19 @@ import numpy as np
 
 from campaign.posed_cases import layered_indentation, posed_grasp, posed_indentation
 from campaign.random_cases import Case, Generator, grasp, indentation, varied_example
+from campaign.relaxing_cases import relaxing_grasp, relaxing_indentation
 from tactsim.interfaces import Experiment
 from tactsim.registry import kinds
 
 NEEDS_FILES = ("localization", "matrix_readout", "confusion", "detectability")
 """Kinds that read a stored grasp or data set: the tests of the faults try them."""
-FEW_TRIALS = {"threshold_trial": 0.02, "elastomer_ranking": 0.02, "switch_probe": 0.1, "posed_indentation": 0.1}
+FEW_TRIALS = {
+    "threshold_trial": 0.02,
+    "elastomer_ranking": 0.02,
+    "switch_probe": 0.1,
+    "posed_indentation": 0.1,
+    "relaxing_grasp": 0.3,
+}
 """Share of all cases that a family gets whose runs take minutes."""
 MADE: dict[str, tuple[str, Callable[[Generator], Case]]] = {
     "indentation": ("indentation", indentation),
@@ -24,6 +31,8 @@ MADE: dict[str, tuple[str, Callable[[Generator], Case]]] = {
     "layered_indentation": ("indentation", layered_indentation),
     "posed_indentation": ("indentation_3d", posed_indentation),
     "posed_grasp": ("grasp", posed_grasp),
+    "relaxing_grasp": ("grasp", relaxing_grasp),
+    "relaxing_indentation": ("timed_indentation", relaxing_indentation),
 }
 """Kind and maker of the families that are no examples with other numbers."""
 

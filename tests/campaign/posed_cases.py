@@ -31,7 +31,7 @@ def posed_grasp(rng: Generator) -> Case:
         tilts = {axis: f"{sign * lean + ASKEW * rng.uniform(-1, 1):.3g} deg" for axis, lean in apart.items() if most}
         case[side] = {**tilts, "offset": [length(1e-3 * extent * rng.uniform(-0.05, 0.05)) for extent in size[:2]]}
     if rng.random() < 0.3:
-        force = rng.uniform(LEAST_FORCE, LARGEST_FORCE) * _shear(case["block"]["tissue"]) * size[0] * size[1] / 100
+        force = rng.uniform(LEAST_FORCE, LARGEST_FORCE) * small_strain_shear(case["block"]["tissue"]) * size[0] * size[1] / 100
         case["loading"] = {"control": "force", "pieces": [{"kind": "ramp", "to": f"{force:.4g} N", "duration": "1 s"}]}
     return case
 
@@ -71,7 +71,7 @@ def _number(text: str) -> float:
     return float(text.split()[0])
 
 
-def _shear(material: str | dict[str, Any]) -> float:
+def small_strain_shear(material: str | dict[str, Any]) -> float:
     """Small-strain shear modulus in kPa."""
     if isinstance(material, str):
         return SHEAR[material]

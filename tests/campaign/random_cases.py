@@ -20,7 +20,12 @@ NUMBER = re.compile(r"^(-?[0-9.]+(?:e-?[0-9]+)?) (.+)$")
 
 def length(metres: float) -> str:
     """A length as a user writes it, to four digits."""
-    return f"{1e3 * metres:.4g} mm"
+    return quantity(1e3 * metres, "mm")
+
+
+def quantity(value: float, unit: str) -> str:
+    """A value in a unit as a user writes it, to four digits."""
+    return f"{value:.4g} {unit}"
 
 
 def tissue(rng: Generator) -> str | Case:

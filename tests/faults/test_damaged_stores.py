@@ -207,6 +207,12 @@ def test_an_array_that_is_gone_does_not_stop_an_extension(store: Path, tmp_path:
     assert check(store).findings == ()
 
 
+@pytest.mark.parametrize("name", ["wall_time", "status", "split", "code"])
+def test_what_is_left_of_a_store_without_an_array_is_told(name: str, store: Path) -> None:
+    shutil.rmtree(store / name)
+    assert main(["data", "info", str(store)]) in (0, 5)
+
+
 def test_a_store_with_nothing_but_its_description_is_filled_anew(
     store: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -145,6 +145,17 @@ def test_an_indentation_that_ends_before_its_displacement_is_seen_and_one_at_its
     assert found({}, reason="threshold reached", experiment=asked) == []
 
 
+def test_the_closing_that_a_hold_keeps_is_asked_for_and_none_after_a_sine() -> None:
+    hold, sine = (
+        {"kind": "hold", "duration": "2 s"},
+        {"kind": "sine", "amplitude": "0.1 mm", "frequency": "1 Hz", "duration": "2 s"},
+    )
+    for last, faults in ((hold, 1), (sine, 0)):
+        pieces = [*GRASP["loading"]["pieces"], last]
+        asked = {**GRASP, "loading": {"control": "displacement", "pieces": pieces}}
+        assert len(found({"displacement": 0.9e-3}, experiment=asked)) == faults
+
+
 @pytest.mark.parametrize("family", ["indentation", "indentation_3d", "layered_indentation", "posed_indentation"])
 def test_the_displacement_that_a_family_asks_for_is_read_in_its_unit(family: str) -> None:
     asked = random_case(family, 1, 0)["experiment"]
