@@ -186,35 +186,6 @@ def as_text(content: Mapping[str, Any]) -> str:
     return "\n".join([*lines, ""])
 
 
-def summary(content: Mapping[str, Any]) -> str:
-    """What the guide says of `model_based`."""
-    matched, friction, softer, rigid = (
-        _sentence(content, reference, factor)
-        for reference, factor in (("matched", FACTOR), ("friction", FACTOR), ("softer", FACTOR), ("softer", RIGID))
-    )
-    return (
-        f"of {content['samples']} grasps, {content['lumps']} with a lump, `model_based` with a reference of the tissue that was "
-        f"grasped {matched}; with one of friction 0.4 instead of 0.6 it {friction}; with one of tissue 20 % softer it {softer}. "
-        f"Without the common factor that it fits, with the softer reference it {rigid}."
-    )
-
-
-def _sentence(content: Mapping[str, Any], reference: str, factor: str) -> str:
-    (numbers,) = [
-        entry["measures"]
-        for entry in content["entries"]
-        if (entry["reference"], entry["estimator"], entry["factor"]) == (reference, "model_based", factor)
-    ]
-    rate, alarms, held = numbers["detection_rate"], numbers["false_alarm_rate"], numbers["coverage"]
-    lateral, depth = (1e3 * numbers[f"{name}_error"]["median"]["value"] for name in ("lateral", "depth"))
-    return (
-        f"finds {100 * rate['value']:.0f} % [{100 * rate['low']:.0f}, {100 * rate['high']:.0f}] of the lumps with "
-        f"false alarms in {round(alarms['value'] * numbers['without_lump'])} of {numbers['without_lump']}, in the median "
-        f"{lateral:.1f} mm off in plan and {depth:.1f} mm in height, and its 90 % regions hold {100 * held['value']:.0f} % "
-        f"[{100 * held['low']:.0f}, {100 * held['high']:.0f}] of them"
-    )
-
-
 def _cell(numbers: Mapping[str, Any], place: Sequence[str], unit: str) -> str:
     entry: Any = numbers
     for key in place:

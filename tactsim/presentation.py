@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tactsim.case.model import Case
+from tactsim.case.model import SCHEMA, Case
 from tactsim.case.writing import case_text
 from tactsim.errors import InputError, UnknownName
 from tactsim.interfaces import Experiment
@@ -102,7 +102,7 @@ def save(result: Result, directory: str | Path, *, force: bool = False, fields: 
     if not origin:
         if result.experiment is None:
             raise InputError("the result does not know the case that it comes from; run a case or an experiment")
-        case = Case(schema="tactsim/case/1", title=result.title, experiment=result.experiment)
+        case = Case(schema=SCHEMA, title=result.title, experiment=result.experiment)
         origin = case.provenance()
     drawn = {f"{name}.png": encoded(figure) for name, figure in result.plot().items()}
     kept = result if fields else replace(result, frames=())

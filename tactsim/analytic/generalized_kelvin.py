@@ -62,7 +62,7 @@ class GeneralizedKelvin:
         InvalidQuantity
             If a time is NaN or not a real number.
         """
-        instants = checked_instants("t", t)
+        instants = checked_instants(t)
         after = np.maximum(instants, 0.0)
         units = -np.expm1(-after[..., None] / self.times) @ self.compliances
         flow = self.fluidity * after if self.fluidity else 0.0

@@ -57,7 +57,7 @@ class GeneralizedMaxwell:
         InvalidQuantity
             If a time is NaN or not a real number.
         """
-        instants = checked_instants("t", t)
+        instants = checked_instants(t)
         units = np.exp(-np.maximum(instants, 0.0)[..., None] / self.times) @ self.moduli
         return np.where(instants < 0, 0.0, self.equilibrium_modulus + units)
 

@@ -170,7 +170,7 @@ class History:
         InvalidQuantity
             If a time is NaN or not a real number.
         """
-        instants = checked_instants("t", t)
+        instants = checked_instants(t)
         piece, elapsed = self.located(instants)
         return np.where(instants < 0, 0.0, self.pieces.taken(piece).at(elapsed).reshape(instants.shape))
 

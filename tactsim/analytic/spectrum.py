@@ -46,17 +46,17 @@ def checked_number(name: str, value: float, *, zero: bool = False) -> float:
     return float(number)
 
 
-def checked_instants(name: str, values: ArrayLike) -> Array:
-    """``values`` in s as a new array of floats of the same shape, infinity allowed.
+def checked_instants(times: ArrayLike) -> Array:
+    """The times in s as a new array of floats of the same shape, infinity allowed.
 
     Raises
     ------
     InvalidQuantity
         If one is NaN.
     """
-    instants = real_array(name, values)
+    instants = real_array("t", times)
     if np.isnan(instants).any():
-        raise InvalidQuantity(f"{name} is {shown(values)}; allowed: times in s, not NaN")
+        raise InvalidQuantity(f"t is {shown(times)}; allowed: times in s, not NaN")
     return instants
 
 

@@ -18,7 +18,7 @@ from tactsim.interfaces.variation import Variation, check_key_paths, check_place
 from tactsim.model import FrozenModel
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.presenter import presenter
-from tactsim.registry import Registered, kind_class, kinds
+from tactsim.registry import Registered, kind_class
 from tactsim.results.provenance import provenance
 from tactsim.results.result import Result
 
@@ -132,11 +132,6 @@ class Case(FrozenModel):
     def resolved(self) -> dict[str, Any]:
         """The case as plain JSON values in SI with every default filled in."""
         return self.model_dump(mode="json", by_alias=True)
-
-
-def experiment_kinds() -> dict[str, type[Experiment]]:
-    """``kind`` -> class of every experiment that a case can ask for."""
-    return kinds(Experiment)
 
 
 def experiment_class(kind: str) -> type[Experiment]:

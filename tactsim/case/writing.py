@@ -10,7 +10,7 @@ from pydantic import BaseModel
 from ruamel.yaml import YAML, RoundTripRepresenter
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
-from tactsim.case.model import Case
+from tactsim.case.model import SCHEMA, Case
 from tactsim.errors import InputError, StorageError, shown
 from tactsim.interfaces import Experiment, Material
 from tactsim.materials.library import LIBRARY
@@ -103,7 +103,7 @@ def case_document(case: Case | Experiment, *, complete: bool = False) -> dict[st
     case : a case, or an experiment, which becomes a case without a title
     complete : whether every default is written too, and the constants of shipped materials instead of their names
     """
-    whole = case if isinstance(case, Case) else Case(schema="tactsim/case/1", experiment=case)
+    whole = case if isinstance(case, Case) else Case(schema=SCHEMA, experiment=case)
     dumped = whole.model_dump(mode="json", by_alias=True, context={"units": "written"})
     document: dict[str, Any] = dumped if complete else _without_defaults(whole, dumped)
     return document

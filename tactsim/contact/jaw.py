@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, ClassVar, Literal, Self
+from typing import ClassVar, Literal, Self
 
 import numpy as np
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from tactsim.array import Array
 from tactsim.contact.profile import check_fillet, rounded_box
-from tactsim.contact.tilt import tilt_matrix
+from tactsim.contact.tilt import Tilt, tilt_matrix
 from tactsim.interfaces import RigidBody
 from tactsim.interfaces.taxel_layout import OUTWARD, JawName
-from tactsim.units import Angle, Length, NonNegative, Positive
+from tactsim.units import Length, NonNegative, Positive
 
 
 class Jaw(RigidBody):
@@ -33,9 +33,9 @@ class Jaw(RigidBody):
     """Radius of the edges."""
     side: JawName = "upper"
     """Whether the tissue is below or above the face."""
-    tilt_x: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
+    tilt_x: Tilt = 0.0
     """Rotation about the x axis, right-handed, before that about y."""
-    tilt_y: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
+    tilt_y: Tilt = 0.0
     """Rotation about the y axis."""
 
     @model_validator(mode="after")

@@ -2,9 +2,16 @@
 
 from __future__ import annotations
 
+from typing import Annotated
+
 import numpy as np
+from pydantic import Field
 
 from tactsim.array import Array
+from tactsim.units import Angle
+
+Tilt = Annotated[Angle, Field(ge=-0.5, le=0.5)]
+"""Angle by which a body may lean, either way."""
 
 
 def tilt_matrix(tilt_x: float, tilt_y: float) -> Array:

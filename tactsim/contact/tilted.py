@@ -4,19 +4,15 @@ from __future__ import annotations
 
 from typing import Annotated, ClassVar, Literal, Self
 
-from pydantic import Field
-
 from tactsim.array import Array
 from tactsim.contact.annulus import Annulus
 from tactsim.contact.own_axes import BodyInOwnAxes
-from tactsim.contact.tilt import tilt_matrix
+from tactsim.contact.tilt import Tilt, tilt_matrix
 from tactsim.interfaces import RigidBody
 from tactsim.registry import Registered
-from tactsim.units import Angle
 
 TiltableBody = Annotated[RigidBody, Registered(RigidBody, lambda cls: {2, 3} <= set(cls.dimensions))]
 """Any body that is defined both by its section and in 3D, which makes it a body of revolution."""
-Tilt = Annotated[Angle, Field(ge=-0.5, le=0.5)]
 
 
 class Tilted(BodyInOwnAxes):

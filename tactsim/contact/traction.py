@@ -152,10 +152,6 @@ class ContactPair:
         """The same pair with the limits at pressures (n,) in Pa kept whatever the pressure becomes."""
         return replace(self, held_limit=self.traction_limit(pressure))
 
-    def iterate(self, state: ContactState) -> ContactIterate:
-        """First iterate of Newton: the tractions of the last accepted step."""
-        return ContactIterate(state.pressure, state.tangential)
-
     def converged(self, points: Array, state: ContactState) -> ContactTraction:
         """Traction at points (d, n) in m by the return mapping, as at the end of a step."""
         gap, normal, hessian = self.body.signed_distance(points)

@@ -138,7 +138,7 @@ def _attributes(store: Store, sweep: Sweep, layout: Layout) -> Iterator[Finding]
 def _consolidated(store: Store) -> Iterator[Finding]:
     """Arrays that the zarr.json of the store describes wrongly."""
     if differing := store.ungathered:
-        named = ", ".join(differing[:10])
+        named = ", ".join(differing[:SHOWN])
         words = (
             f"the zarr.json of the store describes {named} otherwise than their own; go on with --resume, which gathers them anew"
         )
@@ -156,8 +156,8 @@ def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
         )
     foreign = foreign_files(store.path, store.described, names)
     if foreign:
-        more = f" and {len(foreign) - 10} more" if len(foreign) > 10 else ""
-        shown = ", ".join(one_line(name, 80) for name in foreign[:10])
+        more = f" and {len(foreign) - SHOWN} more" if len(foreign) > SHOWN else ""
+        shown = ", ".join(one_line(name, 80) for name in foreign[:SHOWN])
         yield Finding("foreign", (), f"{shown}{more}: not written by tactsim; keep them elsewhere")
     files = OwnFiles(store.path)
     for name in sorted(files.sums()):

@@ -1,12 +1,12 @@
 r"""How well one or two bodies of unknown contrast explain a change of the taxels' forces: Bayesian evidence.
 
-The change d is S^T c plus Gaussian errors of variance v, with rows s of S for the bodies and a normal prior of standard deviation
-:math:`\sigma` for each contrast. With the contrasts integrated out,
+The change d is whitened: it is S^T c plus Gaussian errors of variance 1, with rows s of S for the bodies and a normal prior of
+standard deviation :math:`\sigma` for each contrast. With the contrasts integrated out,
 
-.. math:: \ln p(d) = -\frac{d \cdot d - b^T A^{-1} b}{2 v} - \frac{1}{2} \ln\det\frac{\sigma^2 A}{v},
-    \quad A = S S^T + \frac{v}{\sigma^2} 1, \quad b = S d
+.. math:: \ln p(d) = -\frac{d \cdot d - b^T A^{-1} b}{2} - \frac{1}{2} \ln\det \sigma^2 A,
+    \quad A = S S^T + \frac{1}{\sigma^2} 1, \quad b = S d
 
-but for a constant that only depends on v and the number of taxels. Two bodies are rewarded for what they explain and fined by the
+but for a constant that only depends on the number of taxels. Two bodies are rewarded for what they explain and fined by the
 determinant and by being averaged over all places, so that no other penalty for their number is needed.
 
 Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415.
@@ -53,26 +53,25 @@ class Explanation:
 
 @dataclass(frozen=True, eq=False)
 class Change:
-    """A change of the taxels' forces (taxels,) in N, the variance v of its errors in N^2, and the prior of a contrast."""
+    """A change of the taxels' forces (taxels,), over its errors and dimensionless, and the prior of a contrast."""
 
     values: Array
-    variance: float
     contrast_spread: float
 
     @property
     def ridge(self) -> float:
-        """v over the prior's variance, in N^2."""
-        return self.variance / self.contrast_spread**2
+        """One over the prior's variance."""
+        return 1 / self.contrast_spread**2
 
     def single(self, candidates: Candidates) -> Explanation:
         """The evidence of single bodies: one of the candidates alone."""
         along, stiff = candidates.signals @ self.values, (candidates.signals**2).sum(axis=1) + self.ridge
-        evidence = along**2 / stiff / (2 * self.variance) - np.log(stiff / self.ridge) / 2
+        evidence = along**2 / stiff / 2 - np.log(stiff / self.ridge) / 2
         total = float(scipy.special.logsumexp(evidence))
         weights = np.exp(evidence - total)
         numbers = np.arange(len(candidates))
-        spreads = self.variance / stiff
-        return Explanation(self._whole(total - np.log(len(candidates))), (numbers,), weights, (along / stiff,), (spreads,))
+        averaged = total - np.log(len(candidates)) + nothing(self.values)
+        return Explanation(averaged, (numbers,), weights, (along / stiff,), (1 / stiff,))
 
     def double(self, fine: Candidates, coarse: Candidates, generator: np.random.Generator) -> Explanation:
         r"""Two of the fine candidates that do not overlap, by importance sampling.
@@ -97,7 +96,7 @@ class Change:
         shares = np.exp(logs - scipy.special.logsumexp(logs))
         first, second = self._paired(fine, drawn, rows, generator)
         mean, spread = table.contrasts(first, second)
-        return Explanation(self._whole(evidence), (first, second), np.repeat(shares / DRAWS, DRAWS), mean, spread)
+        return Explanation(evidence + nothing(self.values), (first, second), np.repeat(shares / DRAWS, DRAWS), mean, spread)
 
     def _partners(self, table: _Table, coarse: Candidates) -> list[int]:
         """Bodies of the best pairs, as numbers of the fine candidates."""
@@ -126,14 +125,10 @@ class Change:
         swap = crossed < straight
         return np.where(swap, other, first), np.where(swap, first, other)
 
-    def _whole(self, evidence: float) -> float:
-        """Log evidence with the part that all candidates share."""
-        return evidence + nothing(self.values, self.variance)
 
-
-def nothing(values: Array, variance: float) -> float:
-    """Log probability of a change (taxels,) in N that is noise of this variance only, up to a common constant."""
-    return float(-(values @ values) / (2 * variance) - values.size / 2 * np.log(variance))
+def nothing(values: Array) -> float:
+    """Log probability of a whitened change (taxels,) that is noise only, up to a common constant."""
+    return float(-(values @ values) / 2)
 
 
 class _Table:
@@ -158,7 +153,7 @@ class _Table:
         a, b, u, w = self.stiff[first], self.stiff[second], self.along[first], self.along[second]
         determinant = a * b - cross**2
         means = (b * u - cross * w) / determinant, (a * w - cross * u) / determinant
-        spreads = self.change.variance * b / determinant, self.change.variance * a / determinant
+        spreads = b / determinant, a / determinant
         return means, spreads
 
     def nearest(self, coarse: Candidates, number: int) -> int:
@@ -175,7 +170,7 @@ def _pair_evidence(u: Array, w: Array, *, a: Array, b: Array, cross: Array, chan
     """
     determinant = a * b - cross**2
     explained = (b * u**2 - 2 * cross * u * w + a * w**2) / determinant
-    return explained / (2 * change.variance) - np.log(determinant / change.ridge**2) / 2
+    return explained / 2 - np.log(determinant / change.ridge**2) / 2
 
 
 def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:

@@ -105,15 +105,23 @@ class LumpResponse:
             raise InvalidQuantity(f"a ball outside the table of the response: {error}") from None
 
 
-def tabulated_radii(usual: Array, size: Sequence[float]) -> Array:
-    """Ascending radii in m, usual but for small blocks, of the balls that fit into a block of this size (3,) in m."""
-    radii = part_of_usual(size) * usual
-    return np.asarray(radii[min(size) > 2 * radii])
+@dataclass(frozen=True, eq=False)
+class Tabulation:
+    """The balls of a table: ascending ``radii`` (R,) and the ``spacing`` of the centres in m, both less in a small block
+    (``mesh.block.part_of_usual``), and about how many centres there are at most."""
 
+    radii: Array
+    spacing: float
+    most_centres: int
 
-def spacing_of_centres(usual: float, size: Sequence[float], most: int) -> float:
-    """Distance in m of tabulated centres in a block of this size (3,) in m: usual but for small blocks, and at most so many."""
-    return max(part_of_usual(size) * usual, float(np.prod(size) / most) ** (1 / 3))
+    def radii_in(self, size: Sequence[float]) -> Array:
+        """Radii in m of those that fit into a block of this size (3,) in m."""
+        radii = part_of_usual(size) * self.radii
+        return np.asarray(radii[min(size) > 2 * radii])
+
+    def spacing_in(self, size: Sequence[float]) -> float:
+        """Distance in m of the centres in a block of this size (3,) in m."""
+        return max(part_of_usual(size) * self.spacing, float(np.prod(size) / self.most_centres) ** (1 / 3))
 
 
 def stiffness_words(contrast: float, deviation: float = 0.0) -> str:

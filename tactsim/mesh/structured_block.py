@@ -36,8 +36,6 @@ def structured_block(
     size: Sequence[float],
     cells: tuple[int, int, int],
     inclusions: Sequence[Inclusion] = (),
-    *,
-    lines: tuple[Array, Array, Array] | None = None,
 ) -> BlockMesh:
     """A grid of cells, each split into six tetrahedra that fit their neighbours; regions by centroid, so that they are ragged.
 
@@ -45,23 +43,18 @@ def structured_block(
     ----------
     size : (3,) in m
     cells : number of cells along each side
-    lines : ascending coordinates in m from 0 to 1 side, one more than cells; None means even spacing
 
     Raises
     ------
     InputError
-        If the inclusions do not suit the block, the lines do not span it, or the cells are too many.
+        If the inclusions do not suit the block, or the cells are too many.
     """
     started, extent = time.perf_counter(), np.asarray(size, float)
     if len(cells) != 3 or min(cells) < 1:
         raise InputError(f"the numbers of cells are {cells}; allowed: three numbers from 1")
     check_unknowns(unknowns_of_cells(cells), f"mesh.cells {list(cells)}")
-    spaced = tuple(np.linspace(0.0, extent[k], cells[k] + 1) for k in range(3)) if lines is None else lines
-    for axis, line in enumerate(spaced):
-        if len(line) != cells[axis] + 1 or not (np.diff(line) > 0).all() or line[0] != 0 or line[-1] != extent[axis]:
-            raise InputError(f"the lines along axis {axis} must ascend from 0 to {extent[axis]:g} m in {cells[axis]} steps")
     check_inclusions(extent, inclusions, 0.0)
-    corners = product(spaced)
+    corners = product([np.linspace(0.0, extent[k], cells[k] + 1) for k in range(3)])
     simplices = grid(cells)[:, _KUHN].reshape(-1, 4)
     surfaces = Surfaces(extent, [inclusion.solids(extent) for inclusion in inclusions])
     labels = surfaces.labels(corners[simplices].mean(axis=1))

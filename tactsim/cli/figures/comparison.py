@@ -59,20 +59,19 @@ class Shared:
         return self.pair is None and self.maps is None and not self.columns
 
 
-def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> Figure:
-    """A curve for each result, or bars of numbers where there is no history in common; below them what taxels read."""
-    with styled():
-        return _drawn(results, comparison, Shared.of(results, comparison))
-
-
 def drawn_comparison(results: Mapping[str, Result], comparison: Comparison, form: str = "png") -> bytes | None:
     """`comparison_figure` as PNG, SVG or PDF; None if the results share nothing that it shows."""
     with styled():
-        shared = Shared.of(results, comparison)
-        return None if shared.nothing else encoded(_drawn(results, comparison, shared), form)
+        figure = comparison_figure(results, comparison)
+        return None if figure is None else encoded(figure, form)
 
 
-def _drawn(results: Mapping[str, Result], comparison: Comparison, shared: Shared) -> Figure:
+def comparison_figure(results: Mapping[str, Result], comparison: Comparison) -> Figure | None:
+    """A curve for each result, or bars of numbers where there is no history in common; below them what taxels read; None if there
+    is nothing of it."""
+    shared = Shared.of(results, comparison)
+    if shared.nothing:
+        return None
     pair, maps = shared.pair, shared.maps
     width, height = 6.4, 4.2 if pair else 1.2 + (0.5 + 0.3 * len(results)) * max(1, len(shared.columns))
     if maps is None:

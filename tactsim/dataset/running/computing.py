@@ -14,7 +14,7 @@ from tactsim.dataset.cost import cost_of
 from tactsim.dataset.sampling.drawing import Drawn, drawn_specimen, noise_generator, used_seed
 from tactsim.dataset.sampling.layout import Layout, layout_of, split_of
 from tactsim.dataset.sampling.sweep import Sweep, sweep_of_text
-from tactsim.dataset.store.arrays import DONE, FAILED
+from tactsim.dataset.store.arrays import CHECKSUM_BYTES, DONE, FAILED
 from tactsim.dataset.store.blocks import checksum, encoded, stacked
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError
 from tactsim.experiments.recording import numbers as numbers_of
@@ -81,7 +81,7 @@ def _sample(sweep: Sweep, layout: Layout, drawn: Drawn, split: int, lost: str) -
             reason = "; ".join([reason, *collected.lines()])
             values |= read
     values |= {"status": status, "reason": " ".join(reason.split())[:LONGEST_REASON]}
-    values |= {"wall_time": time.perf_counter() - begin, "checksum": np.zeros(32, np.uint8)}
+    values |= {"wall_time": time.perf_counter() - begin, "checksum": np.zeros(CHECKSUM_BYTES, np.uint8)}
     sample = _complete(values, layout)
     return sample | {"checksum": checksum(sample, layout.variables)}
 

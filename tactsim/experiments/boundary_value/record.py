@@ -144,11 +144,10 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         self._touched = [
             before or bool((one.state.pressure > 0).any()) for before, one in zip(self._touched, contacts, strict=True)
         ]
-        gaps = [float(-one.pair.body.signed_distance(one.state.points)[0].min()) for one in contacts]
         return {
             "time": state.time,
             **self._probes.values(state),
-            "max_penetration": max([0.0, *gaps]),
+            "max_penetration": state.contact.penetration,
             **self.quality.values(self.model.body, state.contact),
         }
 

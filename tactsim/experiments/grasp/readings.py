@@ -66,10 +66,3 @@ def check_sums(reading: JawReading, rotation: Array, side: str, least: float) ->
             f"taxels, gaps and outside of the {side} jaw miss its force by {missed:.2e} N of {size:.2e} N; "
             f"allowed: {SUMS:g} of it"
         )
-
-
-def deepest_penetration(model: GraspModel, state: ContactEquilibrium) -> float:
-    """Largest penetration in m at a surface point of either jaw."""
-    displacement = model.space.split(state.unknowns)[0]
-    gaps = [c.gap(c.surface.points.interpolate(displacement)).min() for c in state.contacts]
-    return max(0.0, -float(min(gaps)))

@@ -12,7 +12,7 @@ from tactsim.experiments.grasp.history import AXES, MOST_COLUMNS, taxel_columns
 from tactsim.experiments.grasp.lumen_pressure import PulsePressure
 from tactsim.experiments.grasp.path import stiffest_block
 from tactsim.experiments.grasp.quantities import final_quantities, history_quantities
-from tactsim.experiments.grasp.readings import JawReading, deepest_penetration, jaw_readings
+from tactsim.experiments.grasp.readings import JawReading, jaw_readings
 from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, SimulatedGrasp
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
@@ -76,7 +76,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             values |= {f"jaw_force_{side}_{axis}": float(part) for axis, part in zip(AXES, reading.force, strict=True)}
             values[f"gap_force_{side}"] = float(reading.taxels.gaps[2])
             values[f"outside_force_{side}"] = float(reading.taxels.outside[2])
-        values["max_penetration"] = deepest_penetration(self.model, state.contact)
+        values["max_penetration"] = state.contact.penetration
         values |= self.quality.values(self.model.body, state.contact)
         values |= {f"lumen_pressure_{k}": p for k, p in zip(self.experiment.lumens, state.loads[1:], strict=True)}
         if max(layout.rows, layout.columns) <= MOST_COLUMNS:

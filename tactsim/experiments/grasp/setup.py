@@ -12,6 +12,7 @@ from tactsim.array import Array
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
+from tactsim.contact.tilt import Tilt
 from tactsim.errors import InvalidQuantity, Refused
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
@@ -27,7 +28,7 @@ from tactsim.mesh.any_inclusion import AnyInclusion, check_inclusions, inclusion
 from tactsim.model import FrozenModel
 from tactsim.progress import Extent
 from tactsim.sensors.matrix_readout import MatrixReadout
-from tactsim.units import Angle, Length, NonNegative, Positive, format_quantity
+from tactsim.units import Length, NonNegative, Positive, format_quantity
 
 OVERHANG = 1.25
 """Size of a jaw over the block's, where none is given: tissue pressed by a fifth of its height stays below it."""
@@ -82,9 +83,9 @@ class JawSettings(FrozenModel):
     """Along y; by default a quarter deeper than the block."""
     fillet: NonNegative[Length] = 1e-3
     """Radius of the edges."""
-    tilt_x: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
+    tilt_x: Tilt = 0.0
     """Rotation about the x axis, right-handed, before that about y."""
-    tilt_y: Annotated[Angle, Field(ge=-0.5, le=0.5)] = 0.0
+    tilt_y: Tilt = 0.0
     """Rotation about the y axis."""
     offset: tuple[Length, Length] = (0.0, 0.0)
     """Place of the middle of its face in x and y, from that of the block."""

@@ -9,7 +9,8 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.contact.mirrored import body_mirrors
-from tactsim.contact.tilted import Tilt, Tilted
+from tactsim.contact.tilt import Tilt
+from tactsim.contact.tilted import Tilted
 from tactsim.experiments.indentation.displaced import DisplacedSetup
 from tactsim.experiments.indentation.graded_section import GradedSection, MeshSettings
 from tactsim.experiments.indentation.history import history_units

@@ -80,14 +80,13 @@ class IndentationRecord(ContactRecord[PressedModel]):
     def values(self, state: TimedState) -> dict[str, float]:
         """History values of a state in SI."""
         model, contact = self.model, state.contact
-        displacement = model.displacement(contact.unknowns)
         forces = [model.force(one.state.traction) for one in contact.contacts]
         values = {} if self._clock is None else {"time": state.time}
         values |= {
             "displacement": contact.load,
             "reaction_force": float(forces[0][-1]),
             "base_force": float(model.base_force(contact)[-1]),
-            "max_penetration": max(0.0, *(float(-one.gap(displacement).min()) for one in contact.contacts)),
+            "max_penetration": contact.penetration,
             "max_pressure": max(float(one.state.pressure.max()) for one in contact.contacts),
             **self.quality.values(model.body, contact),
         }

@@ -18,7 +18,7 @@ from tactsim.interfaces import Experiment
 from tactsim.interfaces.readings import ROUNDING_NOISE
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import TaxelLayout
-from tactsim.localization.lump_response import LumpResponse, spacing_of_centres, tabulated_radii
+from tactsim.localization.lump_response import LumpResponse, Tabulation
 from tactsim.materials.library import named_material
 from tactsim.mechanics.paths.loading import close
 from tactsim.mesh.block import part_of_usual
@@ -27,12 +27,8 @@ from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
 from tactsim.units import Force, Length, NonNegative, Positive, format_quantity
 
-RADII = np.array([1.5e-3, 2.5e-3, 3.5e-3, 5e-3, 6.5e-3, 8e-3])
-"""Radii in m of the tabulated balls."""
-SPACING, MOST_CENTRES = 2e-3, 12_500
-"""Of their tabulated centres in m, and about how many there are at most."""
-ROWS_AT_ONCE = 32
-"""Taxels whose densities are turned into responses together, which bounds the memory."""
+COARSE = Tabulation(np.array([1.5e-3, 2.5e-3, 3.5e-3, 5e-3, 6.5e-3, 8e-3]), spacing=2e-3, most_centres=12_500)
+"""Balls that the filter tries."""
 AWAY = (0.0, 0.25, 0.5)
 """Places in plan, each way from the middle, in pitches of the coarsest matrix."""
 ROOM = 0.5e-3
@@ -139,8 +135,10 @@ class Detectability(Experiment):
         return self.noise * (1.0 if name == "same" else (self.matrices[0] / count) ** 2)
 
     def _response(self, count: int) -> LumpResponse:
+        from tactsim.experiments.localization.lump_sensitivity import lump_response  # loads the solver
+
         setup = self.grasp.model_copy(update={"matrix": self.layout(count)})
-        return kept_response(setup, lambda: coarse_response(setup), how="detectability")
+        return kept_response(setup, lambda: lump_response(setup, COARSE), how="detectability")
 
     def _over_depth(self, response: LumpResponse, contrast: float, sigma: float, threshold: float) -> list[float | None]:
         """Smallest radius at each depth."""
@@ -204,30 +202,3 @@ class Detectability(Experiment):
             given, most = (format_quantity(value, "m") for value in (self.side, widest))
             raise ValueError(f"side: {given} is wider than the block or the jaws; allowed: at most {most}")
         return self
-
-
-def coarse_response(setup: GraspSetup) -> LumpResponse:
-    """The response of the taxels of a grasp on a coarse grid of centres and radii.
-
-    Raises
-    ------
-    InputError
-        If the grasp has an inclusion.
-    ConvergenceError
-        If no step of its history converges.
-    OutOfTime
-        If its time has passed, or it was stopped.
-    """
-    from tactsim.experiments.localization.lump_sensitivity import sensitivity
-
-    size = setup.block.size
-    radii = tabulated_radii(RADII, size)
-    adjoint = sensitivity(setup)
-    densities = adjoint.densities
-    flat = densities.reshape(-1, densities.shape[-1])
-    spacing, tables = spacing_of_centres(SPACING, size, MOST_CENTRES), []
-    for begin in range(0, len(flat), ROWS_AT_ONCE):
-        part = flat[begin : begin + ROWS_AT_ONCE][:, None, None]
-        tables.append(LumpResponse.of_density(adjoint.places, adjoint.volumes, part, size=size, radii=radii, spacing=spacing))
-    values = np.concatenate([table.values for table in tables], axis=4)
-    return LumpResponse(tables[0].axes, radii, values.reshape(*values.shape[:4], *densities.shape[:-1]))

@@ -26,16 +26,16 @@ from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.solvers.linear import direct_solver
 from tactsim.fem.solvers.pardiso import SymmetricPardiso
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
-from tactsim.localization.lump_response import LumpResponse, spacing_of_centres, tabulated_radii
+from tactsim.localization.lump_response import LumpResponse, Tabulation
 from tactsim.mechanics.models.block_model import CLOSING, GraspModel
 from tactsim.mechanics.models.block_source import StructuredSource
 
 CELLS = (14, 14, 8)
 """Cells of the block, each of six tetrahedra: 45 000 unknowns."""
-RADII = np.linspace(1.5e-3, 8e-3, 14)
-"""Radii in m of the tabulated balls, less in a small block (``mesh.block.part_of_usual``)."""
-SPACING, MOST_CENTRES = 1e-3, 100_000
-"""Of the tabulated centres in m, less in a small block, and about how many there are at most: 22 MB for a taxel of both jaws."""
+FINE = Tabulation(np.linspace(1.5e-3, 8e-3, 14), spacing=1e-3, most_centres=100_000)
+"""Balls that estimators try: 22 MB for a taxel of both jaws."""
+ROWS_AT_ONCE = 32
+"""Taxels whose densities are turned into responses together, which bounds the memory."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,7 +49,7 @@ class Sensitivity:
     """What the taxels (jaw, row, column) read on the plain tissue, in N."""
 
 
-def lump_response(setup: GraspSetup) -> LumpResponse:
+def lump_response(setup: GraspSetup, balls: Tabulation = FINE) -> LumpResponse:
     """The fast forward model of lumps in the tissue of a grasp without inclusions, at the end of its history.
 
     Raises
@@ -58,18 +58,17 @@ def lump_response(setup: GraspSetup) -> LumpResponse:
         If the grasp has inclusions.
     ConvergenceError
         If the plain tissue cannot be grasped.
+    OutOfTime
+        If its time has passed, or it was stopped.
     """
-    size = setup.block.size
-    radii = tabulated_radii(RADII, size)
-    adjoint = sensitivity(setup)
-    return LumpResponse.of_density(
-        adjoint.places,
-        adjoint.volumes,
-        adjoint.densities,
-        size=size,
-        radii=radii,
-        spacing=spacing_of_centres(SPACING, size, MOST_CENTRES),
-    )
+    size, adjoint = setup.block.size, sensitivity(setup)
+    radii, spacing, densities = balls.radii_in(size), balls.spacing_in(size), adjoint.densities
+    flat, tables = densities.reshape(-1, densities.shape[-1]), []
+    for begin in range(0, len(flat), ROWS_AT_ONCE):
+        part = flat[begin : begin + ROWS_AT_ONCE][:, None, None]
+        tables.append(LumpResponse.of_density(adjoint.places, adjoint.volumes, part, size=size, radii=radii, spacing=spacing))
+    values = np.concatenate([table.values for table in tables], axis=4)
+    return LumpResponse(tables[0].axes, radii, values.reshape(*values.shape[:4], *densities.shape[:-1]))
 
 
 def sensitivity(setup: GraspSetup) -> Sensitivity:

@@ -181,7 +181,7 @@ class HypothesesEstimator(Estimator):
             some and replace(some, signals=whitened(fit.factor * some.signals, fit.covariance)) for some in bodies
         )
         assert candidates is not None  # only the coarse ones may be missing
-        change = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)
+        change = Change(whitened(fit.change, fit.covariance), self.contrast_spread)
         if coarse is None:
             one = change.single(candidates)
             return ExplainedChange(fit.log_whitening + one.evidence, one, candidates)

@@ -177,9 +177,9 @@ class ModelBasedEstimator(Estimator):
                 ball_candidates(response, size, radii[1::2], gap=gap, every=COARSE),
             )
         )
-        white = Change(whitened(fit.change, fit.covariance), 1.0, self.contrast_spread)
+        white = Change(whitened(fit.change, fit.covariance), self.contrast_spread)
         two = white.double(fine, coarse, np.random.default_rng(SEED))
-        single = max(fit.total + nothing(white.values, 1.0), white.single(fine).evidence)
+        single = max(fit.total + nothing(white.values), white.single(fine).evidence)
         odds = self.second * float(np.exp(np.clip(two.evidence - single, -700, 700)))
         apart = rises_apart(difference - (fit.factor - 1) * np.asarray(readings.reference), readings.noise)
         if odds <= 1 and not apart and not between:

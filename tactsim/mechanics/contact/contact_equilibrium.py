@@ -10,7 +10,7 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.contact.penalty import Augmentation, Regularisation
 from tactsim.errors import Collapsed, ConvergenceError, TooShort
-from tactsim.fem.assembly.body import Kinematics
+from tactsim.fem.assembly.body import Body, Kinematics
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Problem
@@ -64,6 +64,17 @@ class ContactEquilibrium:
     regularisation: Regularisation
     kinematics: Kinematics
     reactions: Array | None = None
+
+    @classmethod
+    def at_rest(cls, body: Body, contacts: tuple[PosedContact, ...], regularisation: Regularisation) -> ContactEquilibrium:
+        """The undeformed body with these contacts."""
+        unknowns = np.zeros(body.space.size)
+        return cls(0.0, unknowns, 0, 0.0, contacts, regularisation, body.kinematics(unknowns))
+
+    @property
+    def penetration(self) -> float:
+        """Largest penetration in m of a surface point in any of the rigid bodies, 0 if none is in one."""
+        return max([0.0, *(-float(one.pair.body.signed_distance(one.state.points)[0].min()) for one in self.contacts)])
 
     def expecting(self, reached: Sequence[PosedContact]) -> ContactEquilibrium:
         """This state before a step whose forces are expected to be those of the contacts ``reached`` from it."""

@@ -63,7 +63,7 @@ class PosedContact:
 
     def start(self) -> ContactIterate:
         """Newton starts from the forces of the last accepted step, or those of a solution to be made exact."""
-        return self.pair.iterate(self.state) if self.begin is None else self.begin
+        return ContactIterate(self.state.pressure, self.state.tangential) if self.begin is None else self.begin
 
     def iterate_at(self, displacement: Array) -> ContactIterate:
         """The forces that hold at displacements (d, n) of the points."""

@@ -1,4 +1,4 @@
-"""Places on quadratic triangles in 3D at which the height can be largest."""
+"""Places on quadratic edges and triangles at which the height, the last coordinate, can be largest."""
 
 from __future__ import annotations
 
@@ -17,12 +17,16 @@ def surface_peaks(facets: Array) -> Array:
     """
     peaks = [facets.reshape(-1, 3)]
     for edge in _EDGES:
-        first, second, middle = (facets[:, k] for k in edge)
-        slope, bend = 4 * middle - 3 * first - second, 2 * first + 2 * second - 4 * middle
-        at = np.clip(_ratio(-slope[:, 2], 2 * bend[:, 2]), 0.0, 1.0)[:, None]
-        peaks.append(first + at * (slope + at * bend))
+        peaks.append(edge_peaks(*(facets[:, k] for k in edge)))
     peaks.append(_inner(facets))
     return np.vstack(peaks)
+
+
+def edge_peaks(first: Array, second: Array, middle: Array) -> Array:
+    """Points (n, d) in m of edges, given their ends and mid-side nodes (n, d) in m, where the height is stationary, or an end."""
+    slope, bend = 4 * middle - 3 * first - second, 2 * first + 2 * second - 4 * middle
+    at = np.clip(_ratio(-slope[:, -1], 2 * bend[:, -1]), 0.0, 1.0)[:, None]
+    return np.asarray(first + at * (slope + at * bend))
 
 
 def _inner(facets: Array) -> Array:

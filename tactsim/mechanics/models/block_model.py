@@ -27,7 +27,7 @@ from tactsim.interfaces.taxel_layout import JAWS, OUTWARD, TaxelLayout
 from tactsim.materials.mirrored import law_mirrors
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact.contact_solution import Action
-from tactsim.mechanics.contact.first_touch import first_touch
+from tactsim.mechanics.contact.first_touch import FAR, first_touch
 from tactsim.mechanics.contact.guarantee import guaranteed_equilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.contact.surface_forces import TaxelForces, taxel_forces
@@ -113,7 +113,7 @@ class GraspModel:
         """
         direction, size = CLOSING[side], float(np.ptp(self.mesh.nodes, axis=0).max())
         samples = np.hstack([self.mesh.nodes[np.unique(self.touchable[side])].T, self.references[side]])
-        begin = np.array([*self.offsets[side], self.mesh.nodes[:, 2].mean()]) - 2 * size * direction
+        begin = np.array([*self.offsets[side], self.mesh.nodes[:, 2].mean()]) - FAR * size * direction
         place = first_touch(self.jaws[side], samples, begin=begin, direction=direction, size=size)
         if place is not None:
             return place
@@ -136,8 +136,7 @@ class GraspModel:
             )
             for side in JAWS
         )
-        unknowns = np.zeros(self.space.size)
-        return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
+        return ContactEquilibrium.at_rest(self.body, contacts, regularisation)
 
     def compressed(self, closing: float) -> Array:
         """Unknowns (size,) that Newton starts from in the undeformed block, each jaw's face closed by ``closing`` in m."""

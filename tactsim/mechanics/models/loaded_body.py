@@ -124,9 +124,8 @@ class LoadedBody:
 
     def at_rest(self) -> ContactEquilibrium:
         """The undeformed body."""
-        unknowns = np.zeros(self.space.size)
         contacts = tuple(contact.posed for contact in self.conditions.contacts)
-        return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, self._regularisation, self.body.kinematics(unknowns))
+        return ContactEquilibrium.at_rest(self.body, contacts, self._regularisation)
 
     def equilibrium(
         self, now: ContactEquilibrium, loads: tuple[float, ...], guess: Array, relaxation: RelaxationStep | None

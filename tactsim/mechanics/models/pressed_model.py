@@ -106,9 +106,8 @@ class PressedModel(ABC):
 
     def start(self, body: RigidBody, place: Array, law: ContactLaw, regularisation: Regularisation) -> ContactEquilibrium:
         """The undeformed tissue under a body with its reference point at ``place`` (d,) in m."""
-        unknowns = np.zeros(self.space.size)
-        contacts = (PosedContact.apart(self.surface, self.reference, ContactPair(body, law), place),)
-        return ContactEquilibrium(0.0, unknowns, 0, 0.0, contacts, regularisation, self.body.kinematics(unknowns))
+        contact = PosedContact.apart(self.surface, self.reference, ContactPair(body, law), place)
+        return ContactEquilibrium.at_rest(self.body, (contact,), regularisation)
 
     def with_body(self, state: ContactEquilibrium, body: RigidBody, law: ContactLaw, place: Array) -> ContactEquilibrium:
         """A state with one more body at ``place`` (d,) in m, clear of where the tissue is now."""

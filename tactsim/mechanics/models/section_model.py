@@ -14,6 +14,7 @@ from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact.contact_steps import transferred
 from tactsim.mechanics.fields.point_values import cauchy_stress
 from tactsim.mechanics.fields.section_fields import section_frame
+from tactsim.mechanics.fields.surface_peaks import edge_peaks
 from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mesh.adaptation import Refinement, refined
 from tactsim.mesh.axisymmetric import Size
@@ -84,10 +85,6 @@ class SectionModel(PressedModel):
         """
         positions = self.mesh.nodes + self.space.split(unknowns)[0]
         first, second, middle = (positions[self.top[:, k]] for k in range(3))
-        slope = 4 * middle - 3 * first - second
-        bend = 2 * first + 2 * second - 4 * middle
-        flat = np.abs(bend[:, 1]) < 1e-300
-        at = np.clip(np.where(flat, 0.0, -slope[:, 1] / np.where(flat, 1.0, 2 * bend[:, 1])), 0.0, 1.0)[:, None]
-        candidates = np.vstack([first, second, middle, first + at * (slope + at * bend)])
+        candidates = np.vstack([first, second, middle, edge_peaks(first, second, middle)])
         inside = candidates[candidates[:, 0] <= radius]
         return float(inside[:, 1].max()), float(inside[np.argmin(inside[:, 0]), 1])

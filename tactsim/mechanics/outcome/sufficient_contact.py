@@ -76,6 +76,5 @@ class SufficientContact:
 def _tightened(now: ContactEquilibrium, reached: ContactEquilibrium, error: float) -> ContactEquilibrium:
     """The state before a step with a tighter tolerance, from which the forces that were ``reached`` are the expected ones."""
     old = reached.regularisation
-    deepest = max(float(-contact.pair.body.signed_distance(contact.state.points)[0].min()) for contact in reached.contacts)
-    tolerance = min(LEAST_TIGHTENING * old.tolerance, sufficient_tolerance(deepest, old.tolerance, error))
+    tolerance = min(LEAST_TIGHTENING * old.tolerance, sufficient_tolerance(reached.penetration, old.tolerance, error))
     return replace(now.expecting(reached.contacts), regularisation=replace(old, tolerance=tolerance))

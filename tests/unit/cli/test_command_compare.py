@@ -269,13 +269,6 @@ def test_taxels_of_other_sizes_are_compared_by_their_pressure() -> None:
     assert "force on the taxel in mN; row 1 at the front" in alike
 
 
-def test_bars_show_only_what_two_results_have() -> None:
-    """Six bars of one result were all that a comparison of an indentation with a film showed."""
-    made = {name: replace(grasped(1, [[0.1]]), units={}, quantities={name: Quantity(2.0, "N", "")}) for name in ("one", "two")}
-    heads, texts = heads_and_texts(made)
-    assert (heads, texts) == ([], ["no two of the results share a number"])
-
-
 def test_arrays_are_compared_by_their_largest_and_round_off_is_no_difference() -> None:
     results = {
         "one": grasped(2, [[0.3, -0.4]]),
@@ -384,6 +377,7 @@ def test_each_of_a_few_steps_is_marked() -> None:
 
 
 def test_no_figure_is_written_of_results_that_share_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Six bars of one result were all that a comparison of an indentation with a film showed."""
     made = {name: replace(grasped(1, [[0.1]]), units={}, quantities={name: Quantity(2.0, "N", "")}) for name in ("one", "two")}
     report(made, tmp_path / "out")
     assert not (tmp_path / "out" / "comparison.png").exists()

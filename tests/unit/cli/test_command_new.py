@@ -9,20 +9,21 @@ from pathlib import Path
 import pytest
 
 from tactsim.case import SCHEMA, Case, load_case, yaml_reading
-from tactsim.case.model import experiment_kinds
 from tactsim.case.template import template
 from tactsim.cli import main
+from tactsim.interfaces import Experiment
+from tactsim.registry import kinds
 from tactsim.shipped import shipped_cases
 
 
-@pytest.mark.parametrize("kind", experiment_kinds())
+@pytest.mark.parametrize("kind", kinds(Experiment))
 def test_the_written_case_is_a_starting_case_and_every_comment_a_default(kind: str, tmp_path: Path) -> None:
     text = template(kind)
     assert "``" not in text, "marks of a docstring"
     place = tmp_path / "case.yaml"
     place.write_text(text, encoding="utf-8")
     case = load_case(place)
-    assert case.case_id == Case(schema=SCHEMA, title=case.title, experiment=experiment_kinds()[kind].starting_case()).case_id
+    assert case.case_id == Case(schema=SCHEMA, title=case.title, experiment=kinds(Experiment)[kind].starting_case()).case_id
     place.write_text(re.sub(r"^  #(?=\S|  )", "  ", text, flags=re.MULTILINE), encoding="utf-8")
     assert place.read_text() != text or "defaults" not in text
     assert load_case(place).case_id == case.case_id
@@ -81,7 +82,7 @@ def test_everything_that_ships_is_listed_with_a_line(capsys: pytest.CaptureFixtu
     assert all(word in shown for word in ("icf_stable", "indentation", "hypotheses", "table_3_1"))
     assert main(["list", "kinds"]) == 0
     lines = capsys.readouterr().out.splitlines()
-    assert [line.split()[0] for line in lines] == list(experiment_kinds())
+    assert [line.split()[0] for line in lines] == list(kinds(Experiment))
     assert all(len(line.split()) > 3 for line in lines)
     assert main(["list", "knids"]) == 2
 

@@ -1,5 +1,7 @@
 """Candidates, evidence, and the estimator that distinguishes one lump, two lumps, an artery and nothing."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from made_grasps import LAYOUT, SIZE, bell_response
@@ -8,7 +10,7 @@ from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
-from tactsim.localization.candidates import ball_candidates, tube_candidates
+from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
 from tactsim.localization.evidence import Change
 
@@ -73,22 +75,27 @@ def test_overlapping_bodies_are_reported():
         np.testing.assert_array_equal(bodies.overlaps(some), [bodies.overlaps(int(k)) for k in some])
 
 
+def over_noise(candidates: Candidates, noise: float) -> Candidates:
+    """The candidates with their signals over a standard deviation in N of the readings."""
+    return replace(candidates, signals=candidates.signals / noise)
+
+
 def test_single_evidence_is_that_of_the_joint_normal_distribution(response):
-    candidates = ball_candidates(response, SIZE, [3.5e-3], gap=GAP).chosen(np.array([100]))
-    values = 0.02 * np.random.default_rng(3).standard_normal(18)
-    change = Change(values, 4e-4, 2.0)
-    covariance = 4e-4 * np.eye(18) + 4.0 * np.outer(candidates.signals[0], candidates.signals[0])
+    candidates = over_noise(ball_candidates(response, SIZE, [3.5e-3], gap=GAP).chosen(np.array([100])), 0.02)
+    values = np.random.default_rng(3).standard_normal(18)
+    change = Change(values, 2.0)
+    covariance = np.eye(18) + 4.0 * np.outer(candidates.signals[0], candidates.signals[0])
     exact = -(values @ np.linalg.solve(covariance, values) + np.linalg.slogdet(covariance)[1]) / 2
     assert change.single(candidates).evidence == pytest.approx(exact, rel=1e-10)
 
 
 def test_the_evidence_of_pairs_is_their_mean_over_all(response):
-    candidates = ball_candidates(response, SIZE, [4.5e-3], gap=GAP, every=3)
-    values = balls(response, (11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)).ravel()
-    change = Change(values, 2.5e-3, 5.0)
+    candidates = over_noise(ball_candidates(response, SIZE, [4.5e-3], gap=GAP, every=3), 0.05)
+    values = balls(response, (11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)).ravel() / 0.05
+    change = Change(values, 5.0)
     exact = []
     for i in range(len(candidates)):
-        pairs = candidates.signals[i][:, None] * candidates.signals[i] + 2.5e-3 / 25 * np.eye(18)
+        pairs = candidates.signals[i][:, None] * candidates.signals[i] + np.eye(18) / 25
         base = 25 * pairs
         for j in np.flatnonzero(~candidates.overlaps(i)):
             covariance = base + 25 * np.outer(candidates.signals[j], candidates.signals[j])

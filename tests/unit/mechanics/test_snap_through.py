@@ -14,44 +14,31 @@ from tactsim.mechanics.contact import contact_equilibrium
 from tactsim.mechanics.contact.contact_solution import Action
 from tactsim.results.result import Status
 
-PUNCH = {
-    "specimen": {
-        "material": {"kind": "mooney_rivlin_2", "c10": 337.3, "c01": 46.46},
-        "thickness": 13.1e-3,
-        "radius": 12.14e-3,
-    },
+CASE = {"contact": {"kind": "coulomb", "friction": 0.0}, "stop": "displacement"}
+PUNCH = CASE | {
+    "specimen": {"material": {"kind": "mooney_rivlin_2", "c10": 337.3, "c01": 46.46}, "thickness": 13.1e-3, "radius": 12.14e-3},
     "body": {"kind": "punch", "radius": 3.334e-3, "fillet": 0.2849e-3},
-    "contact": {"kind": "coulomb", "friction": 0.0},
     "displacement": 2.784e-3,
     "mesh": {"growth": 0.6, "finest": 0.1334e-3},
-    "stop": "displacement",
 }
 """A random case in which one point of the fillet opens and closes by turns on the way, whatever the step."""
-DEEP = {
-    "specimen": {
-        "material": {"kind": "mooney_rivlin_2", "c10": 210.1, "c01": 324.2},
-        "thickness": 17.32e-3,
-        "radius": 10.98e-3,
-    },
+DEEP = CASE | {
+    "specimen": {"material": {"kind": "mooney_rivlin_2", "c10": 210.1, "c01": 324.2}, "thickness": 17.32e-3, "radius": 10.98e-3},
     "body": {"kind": "annulus", "inner_radius": 1.013e-3, "outer_radius": 3.099e-3, "fillet": 0.1853e-3},
-    "contact": {"kind": "coulomb", "friction": 0.0},
     "displacement": 3.463e-3,
     "mesh": {"growth": 0.6, "finest": 0.124e-3},
     "recess": 0.9243e-3,
-    "stop": "displacement",
 }
-STIFFER = {
+STIFFER = CASE | {
     "specimen": {
         "material": {"kind": "mooney_rivlin_2", "c10": 1.942e4, "c01": 3.837e4, "bulk_modulus": 3.014e7},
         "thickness": 18.44e-3,
         "radius": 7.207e-3,
     },
     "body": {"kind": "annulus", "inner_radius": 1.479e-3, "outer_radius": 2.127e-3, "fillet": 0.1274e-3},
-    "contact": {"kind": "coulomb", "friction": 0.0},
     "displacement": 3.677e-3,
     "mesh": {"growth": 0.6, "finest": 0.08507e-3},
     "recess": 0.2339e-3,
-    "stop": "displacement",
 }
 """Random cases of 48 and of 52 steps that are followed past several such points: at 2.891 and 3.523 mm first."""
 

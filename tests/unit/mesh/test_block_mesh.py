@@ -233,13 +233,7 @@ def test_split_cells_are_those_of_the_benchmark(cells, unknowns):
     assert (again.mesh.nodes == block.mesh.nodes).all()
 
 
-def test_cells_may_be_graded_and_wrong_lines_are_refused():
-    lines = (np.array([0, 0.01, 0.04]), np.linspace(0, 0.04, 4), np.linspace(0, 0.02, 3))
-    block = structured_block(SIZE, (2, 3, 2), lines=lines)
-    assert_close(np.unique(block.mesh.nodes[: block.mesh.corner_count, 0]), lines[0], 1e-15)
-    assert_close(block.volumes[0, 0], BLOCK.prod(), 1e-12)
-    with pytest.raises(InputError, match="axis 0"):
-        structured_block(SIZE, (2, 3, 2), lines=(np.array([0, 0.05, 0.04]), *lines[1:]))
+def test_a_side_without_cells_is_refused():
     with pytest.raises(InputError, match="cells"):
         structured_block(SIZE, (2, 0, 2))
 

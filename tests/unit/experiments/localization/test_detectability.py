@@ -9,7 +9,7 @@ from scipy.special import ndtri
 from scipy.stats import ncx2
 
 from tactsim.experiments.localization import detectability, lump_sensitivity
-from tactsim.experiments.localization.detectability import Detectability, coarse_response
+from tactsim.experiments.localization.detectability import COARSE, Detectability
 from tactsim.experiments.localization.detectability_statistics import (
     detection_probability,
     false_alarm_threshold,
@@ -17,7 +17,7 @@ from tactsim.experiments.localization.detectability_statistics import (
     unit_templates,
 )
 from tactsim.experiments.localization.figures.detectability import DetectabilityFigures, _name_curves
-from tactsim.localization.lump_response import LumpResponse, spacing_of_centres, tabulated_radii
+from tactsim.localization.lump_response import LumpResponse
 from tactsim.plotting import figures_for
 
 RADII = np.array([2e-3, 4e-3, 6e-3, 8e-3])
@@ -133,25 +133,25 @@ def test_templates_have_unit_length_and_leave_out_what_nothing_feels():
     assert np.linalg.norm(unit_templates(response, 2), axis=1) == pytest.approx(1.0)
 
 
-def test_the_coarse_response_does_not_depend_on_its_parts(monkeypatch):
+def test_the_response_does_not_depend_on_its_parts(monkeypatch):
     points = np.random.default_rng(1).random((500, 3)) * [40e-3, 40e-3, 20e-3]
     densities = np.random.default_rng(2).random((2, 3, 3, 500))
     adjoint = lump_sensitivity.Sensitivity(points, np.full(500, 6.4e-8), densities, np.zeros((2, 3, 3)))
     monkeypatch.setattr(lump_sensitivity, "sensitivity", lambda setup: adjoint)
     setup = Detectability.example().grasp
-    whole = coarse_response(setup)
-    monkeypatch.setattr(detectability, "ROWS_AT_ONCE", 5)
-    np.testing.assert_allclose(coarse_response(setup).values, whole.values)
+    whole = lump_sensitivity.lump_response(setup, COARSE)
+    monkeypatch.setattr(lump_sensitivity, "ROWS_AT_ONCE", 5)
+    np.testing.assert_array_equal(lump_sensitivity.lump_response(setup, COARSE).values, whole.values)
     assert whole.values.shape[-3:] == (2, 3, 3)
 
 
 @pytest.mark.parametrize("size", [(40e-3, 40e-3, 20e-3), (4e-3, 4e-3, 2e-3), (40e-3, 40e-3, 2.5e-3), (0.2, 0.2, 0.1)])
 def test_balls_of_any_block_are_tabulated_at_a_bounded_number_of_centres(size):
-    radii = tabulated_radii(lump_sensitivity.RADII, size)
-    spacing = spacing_of_centres(lump_sensitivity.SPACING, size, lump_sensitivity.MOST_CENTRES)
+    balls = lump_sensitivity.FINE
+    radii, spacing = balls.radii_in(size), balls.spacing_in(size)
     assert len(radii) >= 10
     assert 2 * radii[-1] < min(size)
-    assert np.prod(np.ceil(np.array(size) / spacing - 1e-9)) <= 1.2 * lump_sensitivity.MOST_CENTRES
+    assert np.prod(np.ceil(np.array(size) / spacing - 1e-9)) <= 1.2 * balls.most_centres
 
 
 def test_words_of_a_single_point_keep_clear_of_the_point_above_it():
