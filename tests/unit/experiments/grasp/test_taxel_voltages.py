@@ -109,6 +109,17 @@ def test_a_folder_without_a_grasp_is_refused(tmp_path):
         MatrixReadoutRun(grasp=str(tmp_path / "film")).run()
 
 
+def test_a_line_that_reads_no_force_at_all_is_warned_of():
+    """Taxels of 25 mm² under 40 mN read -0.3 N by the line from 0 to 2 N, without a word."""
+    time, force = np.array([0.5, 1.0]), np.array([0.5, 1.0])[:, None, None, None] * np.full((2, 3, 3), 0.04)
+    for forces, warned in (((0.0, 2.0), True), ((0.0, 0.05), False)):
+        readout = MatrixReadout(calibration_forces=forces, scatter=None)
+        warnings = readout_warnings(readout, readout.read(time, force, 25e-6), 25e-6)
+        assert any("more than the largest force, 40 mN" in words for words in warnings) == warned
+    default = MatrixReadout(scatter=None)
+    assert readout_warnings(default, default.read(time, 10 * force, 81e-6), 81e-6) == ()
+
+
 def test_samples_beyond_the_converter_without_a_force_are_told_apart():
     """Noise about 0 V alone read as if the sensors were saturated, in every grasp with noise."""
     readout = MatrixReadout()
