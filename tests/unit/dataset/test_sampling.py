@@ -255,6 +255,26 @@ def test_a_distribution_wholly_out_of_bounds_is_refused_before_anything_is_drawn
         check_suitable(sweep_of(tmp_path, TEXT.replace(old, new)))
 
 
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("points: 5", "points: {values: [5, 6]}\n  thicknes: 20 mm", "13: experiment.thicknes: unknown key"),
+        ("outer_radius: ", "outer_radius: {choice: [{unifrm: [3 mm, 4 mm]}, 4 mm]} #", "choice.0: .*did you mean 'uniform'"),
+        ("{uniform: [1 mm, 2.5 mm]}", "{unifrm: [1 mm, 2.5 mm]}", "6: experiment.inner_radius: .*did you mean 'uniform'"),
+        ("kind: ramp, to", "kind: {choice: [ramp, ramp]}, too: 1 mm, to", "pieces.0.too: unknown key"),
+        ("material: ", "material: {choice: [{kind: neo_hookean, c10: 5}, icf_stable]} #", "material.choice.0.c10: 5 has no unit"),
+    ],
+)
+def test_what_is_refused_whatever_is_drawn_is_refused_before_anything_is_drawn(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    """A misspelt distribution in an option was drawn again until another option came: all samples had that one."""
+    assert old in TEXT
+    with pytest.raises(CaseError, match=words) as caught:
+        check_suitable(sweep_of(tmp_path, TEXT.replace(old, new)))
+    assert "101 draws" not in str(caught.value)
+
+
 def test_workers_do_not_hold_the_distributions_against_their_places_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal
 
 import numpy as np
@@ -21,6 +22,8 @@ MOST_NAMED = 16
 """Taxels of a matrix up to which each curve is named."""
 MOST_DOTTED = 40
 """Solved steps up to which each is drawn as a dotted line: more would be a grey ground."""
+NAMES_IN_A_LINE, LINE_OF_NAMES = 3, 0.065
+"""Of the taxels, and the height of such a line over that of the axes: curves that rise at once would run through the names."""
 READ, APPLIED = "#1f4e79", "#b8540a"
 
 
@@ -77,7 +80,10 @@ def _draw_voltages(axis: Axes, result: Result, voltage: Array) -> None:
     for moment in result.history_values("time") if len(result.steps) <= MOST_DOTTED else ():
         axis.axvline(moment, color="0.6", linewidth=0.7, linestyle=":", zorder=0)
     if rows * columns <= MOST_NAMED:
-        axis.legend(loc="upper left", ncols=3, title="row, column", fontsize=7, title_fontsize=7)
+        axis.legend(loc="upper left", ncols=NAMES_IN_A_LINE, title="row, column", fontsize=7, title_fontsize=7)
+        low, high = axis.get_ylim()
+        share = LINE_OF_NAMES * (2 + math.ceil(rows * columns / NAMES_IN_A_LINE))  # of the title and of the border, too
+        axis.set_ylim(top=low + (high - low) / (1 - share))
 
 
 def _draw_forces(axis: Axes, applied: Array, read: Array) -> None:
