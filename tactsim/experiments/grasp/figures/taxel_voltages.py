@@ -57,11 +57,19 @@ def voltages_figure(result: Result) -> Figure:
             row[0].set_title(f"{side} jaw; straight between {_solved(result)}", loc="left")
         axes[1, 0].set_xlabel("time in s")
         axes[1, 1].set_xlabel("taxel, row and column")
-        axes[0, 1].set_ylim(top=1.18 * axes[0, 1].get_ylim()[1])  # room for the legend above the bars
+        if (names := applied[0].size) <= MOST_NAMED:
+            _make_room(axes[0, 0], LINE_OF_NAMES * (2 + math.ceil(names / NAMES_IN_A_LINE)))  # with a title
+        _make_room(axes[0, 1], 2 * LINE_OF_NAMES)
         axes[0, 1].legend(loc="upper right", ncols=2)
         for axis in axes.flat:
             despined(axis)
     return figure
+
+
+def _make_room(axis: Axes, share: float) -> None:
+    """A share of the height above what is drawn, for a legend."""
+    low, high = axis.get_ylim()
+    axis.set_ylim(low, low + (high - low) / (1 - share))
 
 
 def _solved(result: Result) -> str:
@@ -81,9 +89,6 @@ def _draw_voltages(axis: Axes, result: Result, voltage: Array) -> None:
         axis.axvline(moment, color="0.6", linewidth=0.7, linestyle=":", zorder=0)
     if rows * columns <= MOST_NAMED:
         axis.legend(loc="upper left", ncols=NAMES_IN_A_LINE, title="row, column", fontsize=7, title_fontsize=7)
-        low, high = axis.get_ylim()
-        share = LINE_OF_NAMES * (2 + math.ceil(rows * columns / NAMES_IN_A_LINE))  # of the title and of the border, too
-        axis.set_ylim(top=low + (high - low) / (1 - share))
 
 
 def _draw_forces(axis: Axes, applied: Array, read: Array) -> None:
