@@ -181,6 +181,7 @@ def test_a_rule_about_a_label_of_several_numbers_is_refused(tmp_path: Path) -> N
         ("samples_per_specimen: 3", "samples_per_specimen: 1", "nothing varies within a specimen"),
         ("white: 1 mV", "white: 1", "has no unit"),
         ("instantaneous_shear_modulus: {below", "shear_modulus: {below", "unknown label"),
+        ("{below: 4000}", "{below: 4 kPa}", "below: '4 kPa' is not allowed; expected a number in SI without its unit"),
         ("{below: 4000}", "{}", "a condition needs above, below or equal"),
         ("{softer: {instantaneous_shear_modulus: {below: 4000}}}", "{softer: {}}", "softer: no condition"),
         ("instantaneous_shear_modulus: {below", "shear_modulus: {below", r"sweep.yaml:\d+: sweep.splits.out_of_distribution"),
