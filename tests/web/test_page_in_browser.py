@@ -414,7 +414,7 @@ def test_the_labels_in_space_stay_whole(
     jaw: float,
     high: float,
 ) -> None:
-    """On a telephone, of a block twice as wide as the jaws, and in a low window, where one label pushed another below the edge."""
+    """On a telephone, of a block twice as wide as the jaws, and in a low window, where one label pushed another out."""
     monkeypatch.setattr("live_pages.SIZE", np.array([0.04, 0.04, high]))
     size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
