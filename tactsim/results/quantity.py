@@ -137,6 +137,11 @@ def _in_one_unit(values: Array, unit: str) -> list[str]:
     return [f"{value * (number / largest):.5g} {shown}" for value in values]
 
 
+def _without_round_off(values: Array) -> Array:
+    """Values with zero for what is nothing beside the largest."""
+    return np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(initial=0.0), 0.0, values)
+
+
 def format_values(quantity: Quantity) -> str:
     """A number with its unit, or the shape and range of an array."""
     if quantity.value is None:
@@ -145,11 +150,12 @@ def format_values(quantity: Quantity) -> str:
     if values.ndim == 0:
         return format_quantity(float(values), quantity.unit)
     if values.ndim == 1 and values.size <= LISTED and np.isfinite(values).all():
-        values = np.where(np.abs(values) < ROUND_OFF * np.abs(values).max(initial=0.0), 0.0, values)
-        return ", ".join(_in_one_unit(values, quantity.unit))
+        return ", ".join(_in_one_unit(_without_round_off(values), quantity.unit))
     finite = values[np.isfinite(values)]
     shape = " x ".join(map(str, values.shape))
     if not finite.size:
         return f"{shape} values, none finite"
-    low, high = (format_quantity(float(bound), quantity.unit) for bound in (finite.min(), finite.max()))
+    low, high = (
+        format_quantity(float(bound), quantity.unit) for bound in _without_round_off(np.array([finite.min(), finite.max()]))
+    )
     return f"{shape} values, {low} to {high}" if low != high or finite.size < values.size else f"{shape} values, all {low}"

@@ -401,9 +401,21 @@ def test_a_map_without_a_reference_at_its_closing_is_unknown_and_not_zero(browse
         assert label == "top view: unknown, see the estimate"
 
 
-@pytest.mark.parametrize(("width", "height", "jaw"), [(390, 800, 0.05), (1024, 640, 0.02)])
-def test_the_labels_in_space_stay_whole(browser: webdriver.Chrome, tmp_path: Path, width: int, height: int, jaw: float) -> None:
-    """On a telephone, and of a block that is twice as wide as the jaws."""
+@pytest.mark.parametrize(
+    ("width", "height", "jaw", "high"), [(390, 800, 0.05, 0.02), (1024, 640, 0.02, 0.02), (1024, 497, 0.05, 0.027)]
+)
+def test_the_labels_in_space_stay_whole(
+    browser: webdriver.Chrome,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    *,
+    width: int,
+    height: int,
+    jaw: float,
+    high: float,
+) -> None:
+    """On a telephone, of a block twice as wide as the jaws, and in a low window, where one label pushed another out."""
+    monkeypatch.setattr("live_pages.SIZE", np.array([0.04, 0.04, high]))
     size = {"width": width, "height": height, "deviceScaleFactor": 1, "mobile": False}
     browser.execute_cdp_cmd("Emulation.setDeviceMetricsOverride", size)
     try:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Field, field_validator, model_validator
 
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.experiments.recording import RecordingSettings
 from tactsim.model import FrozenModel
+from tactsim.refusals import as_written
 from tactsim.units import NonNegative, Positive, Time
 
 SCHEMA = "tactsim/sweep/1"
@@ -31,6 +32,14 @@ class Condition(FrozenModel):
     """Equal to a number, or to a name such as tube."""
     of: Literal["all", "any"] = "all"
     """Inclusions that must satisfy it."""
+
+    @field_validator("above", "below", mode="before")
+    @classmethod
+    def _in_si(cls, bound: Any) -> Any:
+        if isinstance(bound, str):
+            expected = "expected a number in SI without its unit, such as 0.0045 for 4.5 mm"
+            raise ValueError(f"{as_written(bound)} is not allowed; {expected}")
+        return bound
 
     @model_validator(mode="after")
     def _says_something(self) -> Self:

@@ -11,6 +11,7 @@ from pydantic import ValidationError
 
 from tactsim.case.model import case_class, experiment_class
 from tactsim.case.yaml_reading import Path
+from tactsim.dataset.sampling.fixed_parts import FixedParts
 from tactsim.dataset.sampling.sweep import Place, Sweep, filled
 from tactsim.errors import CaseError, InvalidQuantity, TactsimError, UnknownName
 from tactsim.interfaces.distributions import Listed
@@ -53,8 +54,9 @@ def check_suitable(sweep: Sweep) -> None:
     Raises
     ------
     CaseError
-        With the distribution and one of its values that has another type, unit or dimension than the place, or if all its
-        numbers lie beyond the same bound of the place.
+        With the distribution and one of its values that has another type, unit or dimension than the place, if all its
+        numbers lie beyond the same bound of the place, or with what does not vary and is refused whatever is drawn: an option
+        that is misspelt would be drawn again until another comes, and be missed when all is computed.
     """
     try:
         model = case_class(experiment_class(sweep.kind))
@@ -65,6 +67,7 @@ def check_suitable(sweep: Sweep) -> None:
     before = {path: _cases_before(path, entries) for path in entries}
     cases = max(before[path] * len(tried) for path, tried in entries.items())
     beyond: dict[Path, list[Beyond]] = {}
+    fixed = FixedParts(sweep.document.value)
     for case in range(min(cases, MOST_TRIED)):
         drawn = {path: tried[case // before[path] % len(tried)] for path, tried in entries.items()}
         used: dict[Path, float] = {}
@@ -73,6 +76,7 @@ def check_suitable(sweep: Sweep) -> None:
             model.model_validate_json(json.dumps(value), strict=True, context=context)
         except ValidationError as error:
             unsuitable = _wrong_in_type(error, value)
+            fixed.refuse(used, error, value, model, unsuitable)
             for path in used:
                 if (in_case := _in_case(path, entries)) in unsuitable and not isinstance(drawn[path][0], dict | list):
                     raise _refused(sweep, path, refusals_of(error, value, model)[in_case]) from None
@@ -82,8 +86,11 @@ def check_suitable(sweep: Sweep) -> None:
         except TactsimError:
             used = {}  # of a whole case, such as a file that is gone
         else:
+            fixed.accept(used)
             for path in used:
                 beyond.setdefault(path, []).append(Beyond(drawn[path][1], frozenset(), ""))
+    if cases <= MOST_TRIED and (problems := fixed.problems()):
+        raise sweep.errors(problems)
     of_numbers = {place.path for place in sweep.places if not place.by_index}
     for path, tries in beyond.items():
         if path in of_numbers and {one.number for one in tries} == {number for _, number in entries[path]}:

@@ -82,7 +82,11 @@ class Sweep:
 
     def error(self, path: Path, message: str) -> CaseError:
         """An error at a key path of the file, with its line."""
-        return case_error([Problem(path, self.document.line(path), message)], self.where)
+        return self.errors([Problem(path, 0, message)])
+
+    def errors(self, problems: list[Problem]) -> CaseError:
+        """An error of a line for each problem of the file; their lines are looked up."""
+        return case_error([replace(one, line=self.document.line(one.path)) for one in problems], self.where)
 
     @property
     def extendable(self) -> bool:

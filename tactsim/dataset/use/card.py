@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -88,7 +88,7 @@ def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
         *_how(store, sweep),
         *_counts(store, sweep),
         *_figures(store.path),
-        *_use(layout),
+        *_use(layout, {name for name, _, least, largest in ranges(store) if least != largest}),
         *_limits(attributes["limits"]),
     ]
     tables = [*_table("Ranges", ("variable", "unit", "least", "largest"), ranges(store))]
@@ -165,8 +165,10 @@ def _figures(path: Path) -> list[str]:
     return ["## Figures", *(f"![{Path(name).stem}]({name})" for name in drawn), ""] if drawn else []
 
 
-def _use(layout: Layout) -> list[str]:
+def _use(layout: Layout, varying: Collection[str] = ()) -> list[str]:
+    """How to read the store, with code that learns a label that is ``varying``, if there is one."""
     readings, labels = (_widest_first(layout, role) for role in ("reading", "label"))
+    labels = [name for name in labels if name in varying] or labels
     chosen = [name for name in ("read_force", "force") if name in readings] or readings
     inputs, targets = json.dumps(chosen[:1]), json.dumps(labels[:1] or readings[-1:])
     return [
@@ -197,9 +199,12 @@ def _use(layout: Layout) -> list[str]:
 
 
 def _widest_first(layout: Layout, role: str) -> list[str]:
-    """Variables that are numbers, the largest first: forces of all taxels and a centre, not the error of a mesh and a count."""
+    """Variables that are numbers, the largest first, and of these the forces: forces of all taxels and a centre, not the error
+    of a mesh and a count, and no times.
+    """
     variables = [variable for variable in layout.variables if variable.role == role and variable.dtype != "str"]
-    return [variable.name for variable in sorted(variables, key=lambda variable: -math.prod(variable.sizes))]
+    variables.sort(key=lambda variable: (-math.prod(variable.sizes), variable.unit != "N"))
+    return [variable.name for variable in variables]
 
 
 def _limits(stated: str) -> list[str]:

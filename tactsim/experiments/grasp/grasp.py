@@ -60,8 +60,11 @@ class Grasp(GraspSetup, Experiment):
 
     def begin(self) -> Course:
         """Close the jaws through the whole history; see ``GraspRecord`` for what is reported."""
+        from tactsim.experiments.grasp.warnings import let_go
+
         path, record = self._begun()
-        return Course((record.accept(state) for state, _ in path.states()), record.findings, setup_is_timed=True)
+        steps = (record.accept(state) for state, _ in path.states())
+        return Course(steps, record.findings, setup_is_timed=True, advice=lambda error: let_go(record.steps))
 
     def unloaded(self) -> Findings:
         """The block between jaws that just touch it."""

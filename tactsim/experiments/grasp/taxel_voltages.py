@@ -80,6 +80,7 @@ def single_step(readout: MatrixReadout, reading: MatrixReading, area: float) -> 
 def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float) -> tuple[str, ...]:
     """What a user must know of the readings; ``area`` in m^2 is that of a taxel."""
     warnings = list(readout.film_of(area).warnings(float(reading.applied.max())))
+    warnings += _line_for_other_forces(reading)
     if reading.strongest_pull > 0:
         pull = format_quantity(reading.strongest_pull, "N")
         warnings.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")
@@ -91,6 +92,19 @@ def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float
             f"supply{where}: saturated_*"
         )
     return tuple(warnings)
+
+
+def _line_for_other_forces(reading: MatrixReading) -> list[str]:
+    """A warning if the calibration reads what is no force at all: the line of 0 to 2 N on small taxels gave -0.3 N at 0.04 N."""
+    off = np.abs(reading.force[-1] - reading.applied[-1])[~reading.saturated[-1]]
+    worst, largest = float(off.max(initial=0.0)), float(reading.applied.max())
+    if not worst > largest > 0:
+        return []
+    return [
+        f"read forces are off by {format_quantity(worst, 'N')} at the end, more than the largest force, "
+        f"{format_quantity(largest, 'N')}: the line of the calibration is for other forces; end calibration_forces near that "
+        "one, or give the calibration"
+    ]
 
 
 def _remembers(film: SensorFilm, end: float, force: float) -> bool:

@@ -14,10 +14,13 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.mesh.any_inclusion import inclusion_name
 from tactsim.mesh.block import BlockMesh
+from tactsim.results import StepRecord
 from tactsim.units import format_quantity
 
 RAGGED, SUCTION = 0.05, 0.01
 """Errors of a region's volume, and pulls on a taxel over the largest force on one, of which a user is warned."""
+LET_GO = 1e-3
+"""Force of the jaws over the largest before, below which they hold the block no more."""
 VISIBLE = 0.01
 """Asymmetry of a symmetric grasp's forces of which a user is warned: what the least palpable lump changes a taxel by."""
 
@@ -60,6 +63,18 @@ def uneven(asymmetry: float | None) -> list[str]:
         "force: the mesh shows in the forces, and nothing smaller than this should be read from a single taxel; take smaller "
         "elements"
     ]
+
+
+def let_go(steps: Sequence[StepRecord]) -> str:
+    """What led a grasp to its failure if the jaws hardly pressed any more: nothing then holds the block, and no mesh helps."""
+    forces = [step.values["reaction_force"] for step in steps]
+    if not forces or forces[-1] >= LET_GO * max(forces):
+        return ""
+    last, largest = (format_quantity(force, "N") for force in (max(forces[-1], 0.0), max(forces)))
+    return (
+        f". The jaws had let go of the block: they pressed with {last}, after {largest}, so that nothing held it; let the "
+        "loading end before that, for tissue that relaxes follows opening jaws slowly"
+    )
 
 
 def doubts(grasp: GraspSetup) -> list[str]:

@@ -133,8 +133,11 @@ class Localization(Experiment):
             noise=self.noise,
             valid=None if readings.valid is None else readings.valid.tolist(),
             words=tuple(map(inclusion_in_words, estimate.inclusions)),
-            reference_unused=readings.difference is not None and not self.estimator.needs_reference,
+            reference_unused=self._leaves_reference_out(readings),
         )
+
+    def _leaves_reference_out(self, readings: Readings) -> bool:
+        return readings.difference is not None and not self.estimator.needs_reference
 
     def _readings(self, stored: Result, plain: Result | None) -> Readings:
         dead = self._dead(stored.scene_as(GraspScene).matrix)
@@ -161,6 +164,8 @@ class Localization(Experiment):
         silent = silent_taxels(readings.filled)
         if silent.any():
             warnings.append(f"{silent_words(silent)}; name dead taxels by the key dead")
+        if self._leaves_reference_out(readings):
+            warnings.append("the reference was not used: this estimator reads the forces as they are; take background: reference")
         return warnings if plain is None else [*warnings, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
 
 

@@ -68,7 +68,7 @@ export class Space {
   }
 
   // The labels stay whole: on a narrow screen those at the sides, and those below jaws that are narrower than the block. One that
-  // would stand on an earlier one goes below it.
+  // would stand on an earlier one goes below it, or above it where there is no room below.
   #placeLabels() {
     const { clientWidth: wide, clientHeight: high } = this.labels;
     const within = (at, half, room) => Math.max(half, Math.min(room - half, (room / 2) * (at + 1))), placed = [];
@@ -76,7 +76,10 @@ export class Space {
       const seen = at.clone().project(this.camera), [across, tall] = [place.offsetWidth, place.offsetHeight];
       const x = within(seen.x, across / 2, wide);
       let y = within(-seen.y, tall / 2, high);
-      for (const one of placed) if (Math.abs(one.x - x) < (one.across + across) / 2 && Math.abs(one.y - y) < tall) y = one.y + tall;
+      for (const one of placed) {
+        if (Math.abs(one.x - x) >= (one.across + across) / 2 || Math.abs(one.y - y) >= tall) continue;
+        y = one.y + 1.5 * tall <= high ? one.y + tall : one.y - tall;
+      }
       placed.push({ x, y, across });
       place.style.left = `${x.toFixed(1)}px`;
       place.style.top = `${y.toFixed(1)}px`;

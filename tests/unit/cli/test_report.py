@@ -40,6 +40,7 @@ def test_values_with_units(value: object, unit: str, text: str) -> None:
 
 def test_a_component_that_is_round_off_beside_another_is_zero() -> None:
     assert format_values(Quantity([-2.4e-12, 6e-9, -6.112], "N", "")) == "0 N, 6e-09 N, -6.112 N"
+    assert format_values(Quantity([[8.8e-15, 0.0148]] * 2, "N", "")) == "2 x 2 values, 0 N to 14.8 mN"
     record = StepRecord(1, 1, 0.0, {"jaw_force_upper_x": -7e-12, "jaw_force_upper_z": 6.1, "time": 1e-15})
     line = step_line(record, dict.fromkeys(record.values, "N"))
     assert "jaw_force_upper_x 0 N  jaw_force_upper_z 6.1 N  time 1e-15 N" in line

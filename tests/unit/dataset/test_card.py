@@ -119,6 +119,17 @@ def test_the_code_in_the_card_learns_from_forces_and_not_from_the_mesh() -> None
         assert f'inputs=["{name}"], targets=["inclusion_center"]' in use
 
 
+def test_the_code_in_the_card_learns_what_varies_from_forces_over_time(tmp_path: Path) -> None:
+    """The card of a timed indentation by a ball learned the radius of its hole, 0 in all samples, from the times."""
+    ball = (
+        "schema: tactsim/sweep/1\nexperiment:\n  kind: timed_indentation\n  specimen: {material: icf_stable, thickness: 4 mm}\n"
+    )
+    body = "  body: {kind: sphere, radius: {uniform: [2 mm, 4 mm]}}\n  loading: {control: displacement, pieces: "
+    loading = "[{kind: ramp, to: 0.2 mm, duration: 1 s}]}\nsweep: {samples: 4, times: 8}\n"
+    layout = layout_of(load_sweep(sweep_file(tmp_path, ball + body + loading)))
+    assert 'inputs=["reaction_force_history"], targets=["outer_radius"]' in "\n".join(_use(layout, {"outer_radius"}))
+
+
 def test_the_figures_of_a_card_have_a_title_and_words_that_stand_clear() -> None:
     """The numbers of 16 rows stood on each other, and forces of some micronewtons had a power of ten beside the colours."""
     force = 1e-5 * np.random.default_rng(1).random((2, 16, 16))

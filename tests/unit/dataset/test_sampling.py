@@ -181,6 +181,7 @@ def test_a_rule_about_a_label_of_several_numbers_is_refused(tmp_path: Path) -> N
         ("samples_per_specimen: 3", "samples_per_specimen: 1", "nothing varies within a specimen"),
         ("white: 1 mV", "white: 1", "has no unit"),
         ("instantaneous_shear_modulus: {below", "shear_modulus: {below", "unknown label"),
+        ("{below: 4000}", "{below: 4 kPa}", "below: '4 kPa' is not allowed; expected a number in SI without its unit"),
         ("{below: 4000}", "{}", "a condition needs above, below or equal"),
         ("{softer: {instantaneous_shear_modulus: {below: 4000}}}", "{softer: {}}", "softer: no condition"),
         ("instantaneous_shear_modulus: {below", "shear_modulus: {below", r"sweep.yaml:\d+: sweep.splits.out_of_distribution"),
@@ -253,6 +254,26 @@ def test_a_distribution_wholly_out_of_bounds_is_refused_before_anything_is_drawn
     assert old in TEXT
     with pytest.raises(CaseError, match=words):
         check_suitable(sweep_of(tmp_path, TEXT.replace(old, new)))
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "words"),
+    [
+        ("points: 5", "points: {values: [5, 6]}\n  thicknes: 20 mm", "13: experiment.thicknes: unknown key"),
+        ("outer_radius: ", "outer_radius: {choice: [{unifrm: [3 mm, 4 mm]}, 4 mm]} #", "choice.0: .*did you mean 'uniform'"),
+        ("{uniform: [1 mm, 2.5 mm]}", "{unifrm: [1 mm, 2.5 mm]}", "6: experiment.inner_radius: .*did you mean 'uniform'"),
+        ("kind: ramp, to", "kind: {choice: [ramp, ramp]}, too: 1 mm, to", "pieces.0.too: unknown key"),
+        ("material: ", "material: {choice: [{kind: neo_hookean, c10: 5}, icf_stable]} #", "material.choice.0.c10: 5 has no unit"),
+    ],
+)
+def test_what_is_refused_whatever_is_drawn_is_refused_before_anything_is_drawn(
+    tmp_path: Path, old: str, new: str, words: str
+) -> None:
+    """A misspelt distribution in an option was drawn again until another option came: all samples had that one."""
+    assert old in TEXT
+    with pytest.raises(CaseError, match=words) as caught:
+        check_suitable(sweep_of(tmp_path, TEXT.replace(old, new)))
+    assert "101 draws" not in str(caught.value)
 
 
 def test_workers_do_not_hold_the_distributions_against_their_places_again(

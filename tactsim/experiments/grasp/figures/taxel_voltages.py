@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any, Literal
 
 import numpy as np
@@ -21,6 +22,8 @@ MOST_NAMED = 16
 """Taxels of a matrix up to which each curve is named."""
 MOST_DOTTED = 40
 """Solved steps up to which each is drawn as a dotted line: more would be a grey ground."""
+NAMES_IN_A_LINE, LINE_OF_NAMES = 3, 0.065
+"""Of the taxels, and the height of such a line over that of the axes: curves that rise at once would run through the names."""
 READ, APPLIED = "#1f4e79", "#b8540a"
 
 
@@ -54,11 +57,19 @@ def voltages_figure(result: Result) -> Figure:
             row[0].set_title(f"{side} jaw; straight between {_solved(result)}", loc="left")
         axes[1, 0].set_xlabel("time in s")
         axes[1, 1].set_xlabel("taxel, row and column")
-        axes[0, 1].set_ylim(top=1.18 * axes[0, 1].get_ylim()[1])  # room for the legend above the bars
+        if (names := applied[0].size) <= MOST_NAMED:
+            _make_room(axes[0, 0], LINE_OF_NAMES * (2 + math.ceil(names / NAMES_IN_A_LINE)))  # with a title
+        _make_room(axes[0, 1], 2 * LINE_OF_NAMES)
         axes[0, 1].legend(loc="upper right", ncols=2)
         for axis in axes.flat:
             despined(axis)
     return figure
+
+
+def _make_room(axis: Axes, share: float) -> None:
+    """A share of the height above what is drawn, for a legend."""
+    low, high = axis.get_ylim()
+    axis.set_ylim(low, low + (high - low) / (1 - share))
 
 
 def _solved(result: Result) -> str:
@@ -77,7 +88,7 @@ def _draw_voltages(axis: Axes, result: Result, voltage: Array) -> None:
     for moment in result.history_values("time") if len(result.steps) <= MOST_DOTTED else ():
         axis.axvline(moment, color="0.6", linewidth=0.7, linestyle=":", zorder=0)
     if rows * columns <= MOST_NAMED:
-        axis.legend(loc="upper left", ncols=3, title="row, column", fontsize=7, title_fontsize=7)
+        axis.legend(loc="upper left", ncols=NAMES_IN_A_LINE, title="row, column", fontsize=7, title_fontsize=7)
 
 
 def _draw_forces(axis: Axes, applied: Array, read: Array) -> None:

@@ -138,6 +138,7 @@ def _draw(axis: Axes, view: View, grasp: ViewedGrasp) -> None:
     axis.set_title(view.what, loc="left")
     despined(axis)
     _draw_scale(axis, view, grasp, norm)
+    axis.set_anchor("SE" if view.away == 2 else "N")  # between the rows, whose words the layout then gives room; undoes a scale's
 
 
 def _draw_scale(axis: Axes, view: View, grasp: ViewedGrasp, norm: Normalize) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from types import SimpleNamespace
 
 import meshio
 import numpy as np
@@ -411,6 +412,27 @@ def test_another_mesh_source_carries_the_content():
     assert sourced.origin == "built in layers"
     assert replace(sourced, origin="").content == sourced.content
     assert len(sourced.content) == 32
+
+
+@pytest.mark.parametrize(("end", "said"), [("0 mm", True), ("0.1 mm", False)])
+def test_a_grasp_that_fails_once_its_jaws_have_let_go_says_so(monkeypatch, end, said):
+    """It advised another mesh, though nothing held the block any more."""
+    begun = Grasp._begun
+
+    def failing(self):
+        path, record = begun(self)
+
+        def states():
+            yield from path.states()
+            raise ConvergenceError("no way on")
+
+        return SimpleNamespace(states=states), record
+
+    monkeypatch.setattr(Grasp, "_begun", failing)
+    pieces = [{"kind": "ramp", "to": to, "duration": "1 s"} for to in ("0.2 mm", end)]
+    result = Grasp.example().model_copy(update={"loading": {"control": "displacement", "pieces": pieces}}).run()
+    assert result.reason.startswith("stopped converging: no way on")
+    assert ("The jaws had let go of the block: they pressed with " in result.reason) == said
 
 
 def test_doubts_are_known_before_anything_is_solved():

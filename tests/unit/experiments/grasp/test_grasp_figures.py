@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from drawn import text_of
+from drawn import colliding_words, text_of
+from matplotlib.axes import Axes
 from scenes import Unrendered, grasp_scene, unmarked_figures
 from solids import assert_close
 
@@ -446,6 +447,27 @@ def test_columns_closer_than_their_names_have_the_first_and_the_last_named():
     top = next(axis for axis in figure.axes if axis.get_title(loc="left").startswith("top"))
     named = {text.get_text() for text in top.texts}
     assert named == {"row 1", "row 8", "col. 1", "col. 8"}
+
+
+@pytest.mark.parametrize("size", [(24e-3, 24e-3, 16e-3), (30.5e-3, 32e-3, 20e-3), (24e-3, 30e-3, 40e-3)])
+def test_the_words_of_the_views_stand_clear_in_blocks_of_any_shape(size):
+    """The title of the front view lay on the name of the axis above it where the top view just filled its place."""
+    layout = TaxelLayout(rows=3, columns=4, pitch=6e-3, size=5e-3)
+    scene = grasp_scene(np.array(size), layout, [SPHERE], closing=CLOSING)
+    result = replace(made_up(layout=layout), title="Two lumps", scene=scene)
+    assert colliding_words(views_figure(result, viewed(result))) == []
+
+
+def test_the_numbers_of_the_taxels_show_no_round_off():
+    """Forces of 8.77e-12 mN beside one of 15 mN were wider than their taxel."""
+    result = made_up()
+    grasp = viewed(result)
+    signal = np.full((2, 3, 3), 14.8e-3)
+    signal[0, 0], signal[1, 2] = (8.77e-15, -2e-15, 0.568e-3), (-0.5647e-3, 0.0, 1.02e-3)
+    figure = views_figure(result, replace(grasp, signal=signal))
+    maps = {axis.get_title(loc="left"): {text.get_text() for text in axis.texts} for axis in figure.findobj(Axes)}
+    assert maps["upper jaw in mN"] == {"0", "0.568", "14.8"}
+    assert maps["lower jaw in mN"] == {"0", "−0.565", "1.02", "14.8"}
 
 
 def test_the_views_say_that_jaws_are_not_above_each_other():

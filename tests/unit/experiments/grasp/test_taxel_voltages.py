@@ -5,14 +5,17 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from drawn import covered_lines
 from scenes import unmarked_figures
 
 from tactsim.errors import InputError, StorageError
+from tactsim.experiments.grasp.figures.taxel_voltages import voltages_figure
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.matrix_readout import MatrixReadoutRun
-from tactsim.experiments.grasp.taxel_voltages import readout_warnings, single_step
+from tactsim.experiments.grasp.taxel_voltages import readout_quantities, readout_warnings, single_step
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting import figures_for
-from tactsim.results import Status
+from tactsim.results import Quantity, Status
 from tactsim.results.writing import write_result
 from tactsim.sensors.films.capacitive_film import CapacitiveFilm
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
@@ -107,6 +110,33 @@ def test_a_folder_without_a_grasp_is_refused(tmp_path):
     write_result(FilmTest.example().run(), tmp_path / "film", case_id="0" * 16, provenance={})
     with pytest.raises(InputError, match="needed: a grasp"):
         MatrixReadoutRun(grasp=str(tmp_path / "film")).run()
+
+
+def test_the_names_of_the_taxels_stand_clear_of_curves_that_rise_at_once():
+    """The names of a grasp that held lay on the curves."""
+    time, force = np.array([0.05, 1.0]), np.full((2, 2, 3, 4), 0.4)
+    readout = MatrixReadout(scatter=None)
+    result = Grasp.example().model_copy(update={"readout": readout}).run()
+    held = readout.read(time, force, 81e-6)
+    result = replace(
+        result,
+        quantities=result.quantities
+        | readout_quantities(held)
+        | {f"taxel_force_{side}": Quantity(force[-1, 0].tolist(), "N", "") for side in JAWS},
+    )
+    names = [name for name in covered_lines(voltages_figure(result)) if not name.startswith("_")]
+    assert names == []
+
+
+def test_a_line_that_reads_no_force_at_all_is_warned_of():
+    """Taxels of 25 mm² under 40 mN read -0.3 N by the line from 0 to 2 N, without a word."""
+    time, force = np.array([0.5, 1.0]), np.array([0.5, 1.0])[:, None, None, None] * np.full((2, 3, 3), 0.04)
+    for forces, warned in (((0.0, 2.0), True), ((0.0, 0.05), False)):
+        readout = MatrixReadout(calibration_forces=forces, scatter=None)
+        warnings = readout_warnings(readout, readout.read(time, force, 25e-6), 25e-6)
+        assert any("more than the largest force, 40 mN" in words for words in warnings) == warned
+    default = MatrixReadout(scatter=None)
+    assert readout_warnings(default, default.read(time, 10 * force, 81e-6), 81e-6) == ()
 
 
 def test_samples_beyond_the_converter_without_a_force_are_told_apart():

@@ -288,5 +288,7 @@ experiment:
 def test_the_views_say_where_the_estimator_did_not_read_what_they_draw(folders):
     words = "Read off the forces as they are; drawn is their difference from the reference."
     assert localized(run(folders, estimator=ThesisEstimator())).findings[-1] == words
+    assert any("the reference was not used" in warning for warning in run(folders, estimator=ThesisEstimator()).warnings)
+    assert not any("not used" in warning for warning in run(folders).warnings)
     assert words not in localized(run(folders)).findings
     assert words not in localized(run(folders, reference=None, estimator=ThesisEstimator())).findings
