@@ -39,7 +39,7 @@ SOFTNESS = 2.5e-3
 WIDEST = 1e-2
 """Penetration at which a state that Newton does not find at once is approached, over the body's size: with it Newton finds
 round bodies on coarse cells from far away, and from there to a tenth of it hardly a point opens or closes."""
-EXACT_STEPS = NewtonOptions(largest_inexactness=1e-9)
+EXACT_STEPS = NewtonOptions(largest_inexactness=1e-11)
 """Of bodies without contact. Where equilibria other than the one on the way are near, as under a tension that follows a free
 face, what an inexact step leaves leads to them: a uniform cube became uneven in its first step."""
 

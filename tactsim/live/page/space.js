@@ -68,18 +68,17 @@ export class Space {
   }
 
   // The labels stay whole: on a narrow screen those at the sides, and those below jaws that are narrower than the block. One that
-  // would stand on an earlier one goes below it, or above it where there is no room below.
+  // would stand on an earlier one goes to the nearest place above or below one where there is room.
   #placeLabels() {
     const { clientWidth: wide, clientHeight: high } = this.labels;
     const within = (at, half, room) => Math.max(half, Math.min(room - half, (room / 2) * (at + 1))), placed = [];
     for (const { at, place } of this.marks) {
       const seen = at.clone().project(this.camera), [across, tall] = [place.offsetWidth, place.offsetHeight];
       const x = within(seen.x, across / 2, wide);
-      let y = within(-seen.y, tall / 2, high);
-      for (const one of placed) {
-        if (Math.abs(one.x - x) >= (one.across + across) / 2 || Math.abs(one.y - y) >= tall) continue;
-        y = one.y + 1.5 * tall <= high ? one.y + tall : one.y - tall;
-      }
+      const wanted = within(-seen.y, tall / 2, high), beside = placed.filter((one) => Math.abs(one.x - x) < (one.across + across) / 2);
+      const isFree = (y) => y >= tall / 2 && y <= high - tall / 2 && beside.every((one) => Math.abs(one.y - y) >= tall);
+      const free = beside.flatMap((one) => [one.y + tall + 1, one.y - tall - 1]).filter(isFree);
+      const y = isFree(wanted) ? wanted : free.sort((a, b) => Math.abs(a - wanted) - Math.abs(b - wanted))[0] ?? wanted;
       placed.push({ x, y, across });
       place.style.left = `${x.toFixed(1)}px`;
       place.style.top = `${y.toFixed(1)}px`;
