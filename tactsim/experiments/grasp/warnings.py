@@ -19,7 +19,7 @@ from tactsim.units import format_quantity
 
 RAGGED, SUCTION = 0.05, 0.01
 """Errors of a region's volume, and pulls on a taxel over the largest force on one, of which a user is warned."""
-LET_GO = 1e-3
+LET_GO = 1e-2
 """Force of the jaws over the largest before, below which they hold the block no more."""
 VISIBLE = 0.01
 """Asymmetry of a symmetric grasp's forces of which a user is warned: what the least palpable lump changes a taxel by."""
