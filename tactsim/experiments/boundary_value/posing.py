@@ -27,6 +27,7 @@ from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.fem.assembly.space import SurfacePoints
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.mechanics.contact.contact_steps import lying_on
 from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.models.loaded_body import Conditions, FactoredForce, LoadedBody, MovedContact
 from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
@@ -130,6 +131,8 @@ class _Posing:
         touch = touch_of(self._parts, condition)
         pair = ContactPair(touch.body, condition.law)
         contact = PosedContact.apart(self._surface(touch.points), touch.reference, pair, touch.place)
+        if self._conforms(contact):  # and touches, as it is posed where it first does
+            contact = lying_on(contact)
         displacements = [motion.vector(self._parts.axes) for motion in condition.moving.values()]
         return MovedContact(contact, np.reshape(displacements, (-1, self._dim)))
 

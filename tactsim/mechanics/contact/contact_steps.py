@@ -79,9 +79,19 @@ def held(contact: PosedContact, displacement: Array) -> PosedContact:
     return replace(begun_from(contact, now), pair=contact.pair.with_held_limit(now.pressure))
 
 
+def lying_on(contact: PosedContact) -> PosedContact:
+    """The contact of a face all of which touches, for a first iterate in which all points press, however little.
+
+    Why: what touches without a force counts as open, so that Newton's first tangent does not know the body that a block lies on.
+    Where loads alone press it there, they would throw it aside by metres.
+    """
+    pressure = np.full(contact.reference.shape[1], np.finfo(float).tiny)
+    return replace(contact, begin=ContactIterate(pressure, np.zeros_like(contact.reference)))
+
+
 def augmented(contact: PosedContact, now: ContactTraction) -> PosedContact:
     """The contact before the step, with the forces ``now`` as its multipliers."""
-    return replace(contact, state=contact.state.augmented(now))
+    return replace(contact, state=contact.state.augmented(now), begin=None)
 
 
 def accepted(contact: PosedContact, displacement: Array) -> PosedContact:
