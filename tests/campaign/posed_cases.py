@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from campaign.random_cases import Case, Generator, grasp, indentation, length, tissue
+from campaign.random_cases import Case, Generator, grasp, indentation, length, number_of, quantity, tissue
 
 STEEPEST = 4.0
 """Largest tilt of a jaw in degrees; half the angle of friction if that is less, as beyond it the block slips out."""
@@ -25,14 +25,14 @@ def posed_grasp(rng: Generator) -> Case:
     case = grasp(rng)
     law = case["contact"]
     most = STEEPEST if law["kind"] == "stick" else min(STEEPEST, degrees(atan(law["friction"])) / 2)
-    size = [_number(extent) for extent in case["block"]["size"]]
+    size = [number_of(extent) for extent in case["block"]["size"]]
     apart = {axis: most * rng.uniform(-1, 1) / 2**0.5 for axis in ("tilt_x", "tilt_y")}
     for side, sign in (("upper", 1), ("lower", -1)):
         tilts = {axis: f"{sign * lean + ASKEW * rng.uniform(-1, 1):.3g} deg" for axis, lean in apart.items() if most}
         case[side] = {**tilts, "offset": [length(1e-3 * extent * rng.uniform(-0.05, 0.05)) for extent in size[:2]]}
     if rng.random() < 0.3:
-        force = rng.uniform(LEAST_FORCE, LARGEST_FORCE) * small_strain_shear(case["block"]["tissue"]) * size[0] * size[1] / 100
-        case["loading"] = {"control": "force", "pieces": [{"kind": "ramp", "to": f"{force:.4g} N", "duration": "1 s"}]}
+        force = quantity(random_force(rng, case, LARGEST_FORCE), "N")
+        case["loading"] = {"control": "force", "pieces": [{"kind": "ramp", "to": force, "duration": "1 s"}]}
     return case
 
 
@@ -40,7 +40,7 @@ def layered_indentation(rng: Generator) -> Case:
     """An indentation of a specimen with up to two layers, or a curved top, or a base on which it slips."""
     case = indentation(rng)
     specimen = case["specimen"]
-    thickness, radius = _number(specimen["thickness"]), _number(specimen["radius"])
+    thickness, radius = number_of(specimen["thickness"]), number_of(specimen["radius"])
     layers = [length(1e-3 * thickness * rng.uniform(0.05, 0.3)) for _ in range(int(rng.integers(0, 3)))]
     if layers:
         specimen["layers"] = [{"material": tissue(rng), "thickness": each} for each in layers]
@@ -56,23 +56,25 @@ def layered_indentation(rng: Generator) -> Case:
 def posed_indentation(rng: Generator) -> Case:
     """An indentation in 3D, half as deep, whose body leans by up to five degrees or stands beside the axis; few elements."""
     case = indentation(rng)
-    radius = _number(case["body"].get("outer_radius") or case["body"]["radius"])
-    case["displacement"] = f"{_number(case['displacement']) / 2:.4g} mm"
+    radius = number_of(case["body"].get("outer_radius") or case["body"]["radius"])
+    case["displacement"] = f"{number_of(case['displacement']) / 2:.4g} mm"
     case["mesh"] = {"growth": 1.0, "finest": length(1e-3 * radius / 10), "sectors": 3}
     if rng.random() < 0.7:
         case |= {axis: f"{rng.uniform(-5, 5):.3g} deg" for axis in ("tilt_x", "tilt_y")}
     if rng.random() < 0.5:
-        room = _number(case["specimen"]["radius"]) - 1.2 * radius
+        room = number_of(case["specimen"]["radius"]) - 1.2 * radius
         case["offset"] = length(1e-3 * rng.uniform(0.0, 0.3) * room)
     return case
 
 
-def _number(text: str) -> float:
-    return float(text.split()[0])
+def random_force(rng: Generator, case: Case, largest: float) -> float:
+    """A force in N on the jaws of a grasp, from ``LEAST_FORCE`` to the ``largest`` in its units."""
+    width, depth, _ = map(number_of, case["block"]["size"])
+    return rng.uniform(LEAST_FORCE, largest) * _shear(case["block"]["tissue"]) * width * depth / 100
 
 
-def small_strain_shear(material: str | dict[str, Any]) -> float:
+def _shear(material: str | dict[str, Any]) -> float:
     """Small-strain shear modulus in kPa."""
     if isinstance(material, str):
         return SHEAR[material]
-    return 2e-3 * float(np.sum([_number(material[key]) for key in ("c10", "c01") if key in material]))
+    return 2e-3 * float(np.sum([number_of(material[key]) for key in ("c10", "c01") if key in material]))

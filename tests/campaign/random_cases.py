@@ -28,11 +28,21 @@ def quantity(value: float, unit: str) -> str:
     return f"{value:.4g} {unit}"
 
 
+def number_of(text: str) -> float:
+    """The number of a value that is written so."""
+    return float(text.split()[0])
+
+
+def random_shear(rng: Generator) -> float:
+    """A shear modulus from 500 Pa to 300 kPa."""
+    return float(500 * 600 ** rng.random())
+
+
 def tissue(rng: Generator) -> str | Case:
     """A shipped set, a neo-Hookean or a Mooney-Rivlin tissue from 0.5 to 300 kPa, nearly or exactly incompressible."""
     if rng.random() < 0.4:
         return str(rng.choice(TISSUES))
-    shear = 500 * 600 ** rng.random()
+    shear = random_shear(rng)
     bulk: Case = {"bulk_modulus": f"{shear * 10 ** rng.uniform(1.5, 4):.4g} Pa"} if rng.random() < 0.5 else {}
     if rng.random() < 0.5:
         return {"kind": "neo_hookean", "c10": f"{shear / 2:.4g} Pa", **bulk}

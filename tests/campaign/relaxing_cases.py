@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
-from campaign.posed_cases import small_strain_shear
-from campaign.random_cases import Case, Generator, grasp, indentation, quantity, tissue
+from campaign.posed_cases import random_force
+from campaign.random_cases import Case, Generator, grasp, indentation, number_of, quantity, random_shear, tissue
 
 FLOWING = 0.15
 """Share of tissues that flow: those of atrial tissue."""
 MOST_RELAXED = 0.9
 """Largest part of the stiffness of other tissue that relaxes."""
-LEAST_FORCE, LARGEST_FORCE = 0.01, 0.05
+LARGEST_FORCE = 0.05
 """On a jaw in N per kPa of shear modulus at once and cm^2 of a block's face."""
 
 
@@ -21,11 +21,11 @@ def relaxing_tissue(rng: Generator) -> str | Case:
         return "atrial"
     material = tissue(rng)
     if isinstance(material, str):
-        material = {"kind": "neo_hookean", "c10": f"{500 * 600 ** rng.random() / 2:.4g} Pa"}
+        material = {"kind": "neo_hookean", "c10": quantity(random_shear(rng) / 2, "Pa")}
     count = int(rng.integers(1, 4))
     shares = rng.dirichlet([1.0] * count) * rng.uniform(0.1, MOST_RELAXED)
     times = sorted(10 ** rng.uniform(-2, 2, count))
-    relaxation = {"fractions": [round(float(share), 4) for share in shares], "times": [f"{time:.4g} s" for time in times]}
+    relaxation = {"fractions": [round(float(share), 4) for share in shares], "times": [quantity(time, "s") for time in times]}
     return {**material, "relaxation": relaxation}
 
 
@@ -33,11 +33,9 @@ def relaxing_grasp(rng: Generator) -> Case:
     """A grasp of a block that relaxes: closed within 0.05 to 5 s, and held, moved in sines, or opened by up to a third."""
     case = grasp(rng)
     case["block"]["tissue"] = relaxing_tissue(rng)
-    most = float(case["loading"]["pieces"][0]["to"].split()[0])
+    most = number_of(case["loading"]["pieces"][0]["to"])
     if rng.random() < 0.25 and case["block"]["tissue"] != "atrial":
-        size = [float(extent.split()[0]) for extent in case["block"]["size"]]
-        force = rng.uniform(LEAST_FORCE, LARGEST_FORCE) * small_strain_shear(case["block"]["tissue"]) * size[0] * size[1] / 100
-        case["loading"] = {"control": "force", "pieces": _pieces(rng, force, "N")}
+        case["loading"] = {"control": "force", "pieces": _pieces(rng, random_force(rng, case, LARGEST_FORCE), "N")}
     else:
         case["loading"] = {"control": "displacement", "pieces": _pieces(rng, most, "mm")}
     case["time"] = {"tolerance": 0.02}
@@ -47,7 +45,7 @@ def relaxing_grasp(rng: Generator) -> Case:
 def relaxing_indentation(rng: Generator) -> Case:
     """An annulus, a ball or a flat punch on tissue that relaxes, at up to an eighth of its thickness; coarse meshes."""
     case = indentation(rng)
-    depth = float(case["displacement"].split()[0]) / 2
+    depth = number_of(case["displacement"]) / 2
     for key in ("displacement", "stop", "recess"):
         case.pop(key, None)
     case["specimen"]["material"] = relaxing_tissue(rng)
