@@ -81,6 +81,7 @@ def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
     """The card in Markdown."""
     attributes = store.attributes
     title = plain(attributes["title"] or f"Data set {attributes['sweep_id']}")
+    bounds = ranges(store)
     head = ["---", f"license: {plain(attributes['license']).lower()}", TAGS, "---", f"# {title}", ""]
     parts = [
         layout.recorder.describe(),
@@ -88,10 +89,10 @@ def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
         *_how(store, sweep),
         *_counts(store, sweep),
         *_figures(store.path),
-        *_use(layout, {name for name, _, least, largest in ranges(store) if least != largest}),
+        *_use(layout, {name for name, _, least, largest in bounds if least != largest}),
         *_limits(attributes["limits"]),
     ]
-    tables = [*_table("Ranges", ("variable", "unit", "least", "largest"), ranges(store))]
+    tables = [*_table("Ranges", ("variable", "unit", "least", "largest"), bounds)]
     tables += _table("Variables", ("variable", "dimensions beside sample", "unit", "meaning"), variable_rows(store))
     case = ["## The sweep", "```json", json.dumps(json.loads(attributes["sweep"]), indent=1), "```", ""]
     return "\n".join([*head, *parts, *tables, *case])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypeGuard
 
 import numpy as np
 
@@ -122,7 +123,7 @@ class _Posing:
         if isinstance(condition, BodyForceCondition):
             return DeadLoad(weight_of(self._body, np.array(condition.vector(self._parts.axes)))), 1.0
         facets = self._parts.facets(condition)
-        if isinstance(condition, PressureCondition) and condition.follows:
+        if _follows(condition):
             return FollowerPressure(self._body.space, facets, self._body.pattern, condition.pressure), condition.pressure
         points = self._body.space.surface_points(facets)
         if isinstance(condition, PressureCondition):
@@ -146,6 +147,6 @@ class _Posing:
         return SurfaceAssembly(points, self._body.pattern, self._dim)
 
 
-def _follows(condition: Load) -> bool:
+def _follows(condition: Load) -> TypeGuard[PressureCondition]:
     """Whether it is a pressure that follows the deformed face."""
     return isinstance(condition, PressureCondition) and condition.follows

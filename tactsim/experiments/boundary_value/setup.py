@@ -28,7 +28,7 @@ from tactsim.experiments.boundary_value.rigid_motions import free_motions, in_wo
 from tactsim.experiments.boundary_value.symmetry import ELSEWHERE, check_contact, check_load, check_material
 from tactsim.interfaces import Material
 from tactsim.materials.any_material import AnyMaterial
-from tactsim.mechanics.models.prescribed_motion import PrescribedMotions
+from tactsim.mechanics.models.prescribed_motion import Disagreement, PrescribedMotions
 from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
 from tactsim.units import Length, format_quantity
@@ -205,7 +205,8 @@ class BoundaryValueSetup(FrozenModel):
         try:
             PrescribedMotions([one.motion for one in held], parts.size)
         except InputError as error:
-            across = f"; {ELSEWHERE}" if any(f"about {plane}" in str(error) for plane in parts.domain.mirrors) else ""
+            mirrors = {one.motion.name for one in held[: len(parts.domain.mirrors)]}  # which come first
+            across = f"; {ELSEWHERE}" if isinstance(error, Disagreement) and mirrors.intersection(error.names) else ""
             raise ValueError(f"conditions: {error}{across}") from None
         if not self.contacts and (free := free_motions(parts, held)):
             raise ValueError(

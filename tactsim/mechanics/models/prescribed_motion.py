@@ -140,6 +140,14 @@ class Prescribed:
         return float(max(np.abs(self.values).max(initial=0.0), distances))
 
 
+class Disagreement(InputError):
+    """Two motions, by their ``names``, prescribe different displacements of one node."""
+
+    def __init__(self, *names: str):
+        super().__init__(f"{' and '.join(names)} prescribe different displacements of one node; free one of them")
+        self.names = names
+
+
 class PrescribedMotions:
     """Several motions of one body, each with its factor; ``unknowns`` (m,) are all whose displacements they prescribe.
 
@@ -200,7 +208,7 @@ class PrescribedMotions:
             apart = (owner[places] >= 0) & (np.abs(new - values[places]) > SAME * self._size)
             if apart.any():
                 other = self._motions[int(owner[places][apart][0])].name
-                raise InputError(f"{motion.name} and {other} prescribe different displacements of one node; free one of them")
+                raise Disagreement(motion.name, other)
             values[places], owner[places] = new, number
         return values
 
