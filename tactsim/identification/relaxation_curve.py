@@ -25,6 +25,8 @@ NEGLIGIBLE = 1e-3
 MOST_EVALUATIONS = 2000
 STEP = 1e-5
 """Of a log constant: central differences then are right to 1e-10."""
+LARGEST_LOGARITHM = 700.0
+"""Of a time in s that is drawn: beyond it lie no floating-point numbers, far in the tails of what a curve leaves open."""
 LARGEST_RATIO = 4.0
 """Assumption: a curve determines a part whose interval of 95 % is not wider than this from end to end."""
 
@@ -212,7 +214,8 @@ def _drawn(logarithms: Array, time: Array, response: Array, rise: float) -> tupl
     count = logarithms.size // 2 + 1
     parts = np.exp(logarithms[:count]) / np.exp(logarithms[:count]).sum()
     of_parts = changes[:, :count] - (changes[:, :count] @ parts)[:, None]
-    return np.minimum(parts * np.exp(of_parts), 1.0), np.exp(logarithms[count:] + changes[:, count:])
+    log_times = np.clip(logarithms[count:] + changes[:, count:], -LARGEST_LOGARITHM, LARGEST_LOGARITHM)
+    return np.exp(np.minimum(np.log(parts) + of_parts, 0.0)), np.exp(log_times)
 
 
 def _slopes(logarithms: Array, time: Array, response: Array, rise: float) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -17,13 +18,17 @@ from tactsim.materials.library import named_material
 from tactsim.materials.viscoelasticity import shear_compliance
 from tactsim.mechanics.outcome.plausibility import oddities
 from tactsim.mechanics.outcome.success import within_layer
-from tactsim.mechanics.paths.loading import AnyLoading, ForceLoading
+from tactsim.mechanics.paths.loading import AnyLoading, ForceLoading, Sine
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import rows
 from tactsim.units import Length, NonNegative, Positive, format_quantity
 
 DECADES, PER_DECADE = 6, 10
 """Times sampled after the beginning of each piece: over this many decades up to its length, and so many in each."""
+ROUND_OFF = 1e-9
+"""Change of a history between two pieces, over its largest value, that is no jump."""
+IN_A_PERIOD = 20
+"""Times of a period that show its largest and its smallest value within 1.2 % of the amplitude."""
 MOST_TIMES = 1_000_000
 """Sampled times of all pieces: each takes 1 kB, and all are rows of the history."""
 
@@ -145,13 +150,28 @@ class ClosedForm(Experiment):
         )
 
     def _times(self) -> Array:
-        """Sampled times in s, each piece's beginning and end included."""
-        sampled = []
-        for segment in self.loading.segments():
+        """Sampled times in s, each piece's beginning and end included, and the last instant before a jump."""
+        sampled, segments = [], self.loading.segments()
+        for segment in segments:
             duration = segment.end - segment.start
             early = duration * np.geomspace(10.0**-DECADES, 1.0, DECADES * PER_DECADE + 1)
             sampled.append(segment.start + np.union1d(early, np.linspace(0.0, duration, self.points)))
-        return np.unique(np.concatenate(sampled))
+        round_off = ROUND_OFF * max(map(abs, self.loading.least_and_most()))
+        both = [(one.end, abs(after.at(after.start) - one.at(one.end))) for one, after in pairwise(segments)]
+        jumps = [time for time, change in both if change > round_off]
+        return np.unique(np.concatenate([*sampled, np.nextafter(jumps, 0.0)]))
+
+    def _coarse_sines(self) -> list[str]:
+        """A warning if the history shows too little of a sine."""
+        waves = [piece for piece in self.loading.pieces if isinstance(piece, Sine)]
+        fastest = max(waves, key=lambda wave: wave.frequency * wave.duration, default=None)
+        if fastest is None or self.points - 1 >= IN_A_PERIOD * fastest.frequency * fastest.duration * (1 - ROUND_OFF):
+            return []
+        frequency, needed = format_quantity(fastest.frequency, "Hz"), IN_A_PERIOD * fastest.frequency * fastest.duration + 1
+        return [
+            f"points: {self.points} times are fewer than {IN_A_PERIOD} in each period of the sine of {frequency}: its curves and "
+            f"its largest and smallest values are too coarse; take {np.ceil(needed * (1 - ROUND_OFF)):.0f}, or a shorter sine"
+        ]
 
     def _quantities(
         self, annulus: ViscoelasticAnnulus, last: dict[str, float], columns: tuple[Array, ...]
@@ -180,6 +200,7 @@ class ClosedForm(Experiment):
         if deepest > SMALL_DISPLACEMENT:
             limit = f"linear theory is meant for up to {SMALL_DISPLACEMENT:g}"
             warnings.append(f"the displacement reaches {deepest:.3g} of the outer radius; {limit}")
+        warnings += self._coarse_sines()
         tissue = {} if self.thickness is None else {"thickness": self.thickness}
         radii = {"inner_radius": self.inner_radius} if self.inner_radius else {}
         return warnings + oddities({"material": self.material}, tissue=tissue, bodies=radii | {"outer_radius": self.outer_radius})

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 
 from tactsim.array import Array
 from tactsim.identification.columns import of_file, read_columns
-from tactsim.mechanics.paths.loading import ForceLoading
+from tactsim.mechanics.paths.loading import ForceLoading, Sine
 from tactsim.model import FrozenModel
 from tactsim.outside.input_path import InputPath
 from tactsim.sensors.films.film import HOLM
@@ -117,7 +117,11 @@ class Pieces(FrozenModel):
     kind: Literal["pieces"]
     loading: ForceLoading
     """The pieces."""
-    highest_frequency: ClassVar[float] = 0.0
+
+    @property
+    def highest_frequency(self) -> float:
+        """Of the sines in Hz, 0 without one."""
+        return max((piece.frequency for piece in self.loading.pieces if isinstance(piece, Sine)), default=0.0)
 
     @property
     def duration(self) -> float:

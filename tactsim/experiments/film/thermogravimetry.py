@@ -162,7 +162,8 @@ class ThermogravimetricAnalysis(Experiment):
         spread, known = max(fractions) - min(fractions), max(step.values["volume_fraction_deviation"] for step in steps)
         if spread <= 2 * known:
             return ()
+        apart = f", {spread / known:.3g} times the standard uncertainty" if known else ""
         return (
-            f"the readings of the density give {min(fractions):.4g} to {max(fractions):.4g}, {spread / known:.3g} times the "
-            "standard uncertainty: which density is meant decides, not the weighing (erratum E27)",
+            f"the readings of the density give {min(fractions):.4g} to {max(fractions):.4g}{apart}: which density is meant "
+            "decides, not the weighing (erratum E27)",
         )

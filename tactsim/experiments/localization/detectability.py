@@ -33,6 +33,8 @@ AWAY = (0.0, 0.25, 0.5)
 """Places in plan, each way from the middle, in pitches of the coarsest matrix."""
 ROOM = 0.5e-3
 """Least distance of a ball from the faces of the block in m; all these lengths are less in a small block."""
+FEWEST_ALARMS = 10
+"""Draws above the threshold by which it is set: the rate of false alarms is then known within a third."""
 NOISES = ("same", "by_area")
 
 
@@ -76,7 +78,7 @@ class Detectability(Experiment):
     false_alarms: Annotated[float, Field(gt=0, lt=1)] = 0.05
     """Probability that plain tissue is taken for a lump."""
     draws: Annotated[int, Field(ge=100, le=1_000_000)] = 2000
-    """Of errors, by which the threshold is set."""
+    """Of errors, by which the threshold is set: at least 10 over ``false_alarms``."""
     seed: NonNegative[int] = 1
     """Of these draws."""
 
@@ -143,7 +145,7 @@ class Detectability(Experiment):
     def _over_depth(self, response: LumpResponse, contrast: float, sigma: float, threshold: float) -> list[float | None]:
         """Smallest radius at each depth."""
         width, depth, height = self.grasp.block.size
-        away = np.array(AWAY) * self.side / self.matrices[0]
+        away = np.array(AWAY) * self.side / min(self.matrices)
         plan = np.array([(width / 2 + dx, depth / 2 + dy) for dx in away for dy in away])
         volumes = 4 / 3 * np.pi * response.radii**3
         smallest = []
@@ -197,6 +199,12 @@ class Detectability(Experiment):
         for ratio in self.shear_ratios:
             if ratio == 1:
                 raise ValueError("shear_ratios: 1 is plain tissue, which nothing can find; allowed: 0 or more, but not 1")
+        if self.draws * self.false_alarms < FEWEST_ALARMS * (1 - 1e-9):
+            needed = int(np.ceil(FEWEST_ALARMS / self.false_alarms * (1 - 1e-9)))
+            raise ValueError(
+                f"draws: of {self.draws}, too few give a false alarm at a rate of {self.false_alarms:g} for a threshold; "
+                f"allowed: at least {needed}, or a higher rate"
+            )
         widest = min(self.grasp.jaw("upper").width, self.grasp.jaw("upper").depth, *self.grasp.block.size[:2])
         if self.side > widest * (1 + 1e-12):
             given, most = (format_quantity(value, "m") for value in (self.side, widest))

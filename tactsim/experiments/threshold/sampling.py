@@ -20,7 +20,7 @@ from tactsim.sensors.threshold.threshold_sensor import ThresholdSensor
 from tactsim.sensors.threshold.threshold_trigger import Threshold, ThresholdTrigger, TriggerState, reported_threshold
 
 BLOCK = 10
-"""Trials that share the phase of sampling; the phases of the blocks divide the sampling interval evenly."""
+"""Most trials that share the phase of sampling; the phases of the blocks, of equal sizes, divide the sampling interval evenly."""
 FINER = 16
 """Sampling of the ideal chain, which stands for continuous time, over that of the real one."""
 SILENT = Noise()
@@ -130,7 +130,7 @@ class ApproachSampling:
         touches = []
         for block in range(blocks):
             check_time()
-            copies = 1 if noise.silent else min(BLOCK, trials - block * BLOCK)
+            copies = 1 if noise.silent else (block + 1) * trials // blocks - block * trials // blocks
             generator = np.random.default_rng([*seed, block])
             recording, touch = self.recorded(self.sensor, noise, generator, phase=(block + 0.5) / blocks, copies=copies)
             touches.append(touch)

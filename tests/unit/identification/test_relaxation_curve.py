@@ -130,3 +130,15 @@ def test_a_part_that_noise_splits_in_two_is_named() -> None:
     assert high - low < 0.05
     assert "95 % intervals: fractions" in str(fit)
     assert ts.fit_relaxation(noisy(1, 0.0005)).warnings == ()
+
+
+def test_a_part_that_the_curve_leaves_open_has_finite_intervals() -> None:
+    """The tails of what is drawn of a spurious part go beyond the floating-point numbers, of which numpy warns."""
+    generator, time = np.random.default_rng(3), np.geomspace(0.02, 60, 60)
+    noise = [generator.standard_normal(time.size) for _ in range(31)][-1]
+    mean = {tau: tau / 0.2 * np.expm1(0.2 / tau) for tau in (0.5, 8.0)}
+    response = 0.5 + 0.3 * mean[0.5] * np.exp(-time / 0.5) + 0.2 * mean[8.0] * np.exp(-time / 8.0)
+    fit = ts.fit_relaxation(RelaxationCurve(time, response * (1 + 0.003 * noise)), rise=0.2)
+    assert len(fit.warnings) == 1
+    assert np.isfinite(fit.time_intervals).all()
+    assert fit.fraction_intervals.max() == 1

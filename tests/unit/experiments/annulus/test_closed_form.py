@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from mutants import assert_kills
 from scenes import unmarked_figures
 
 from tactsim.analytic.annular_punch import solve_annular_punch
@@ -14,6 +15,7 @@ from tactsim.materials.library import named_material
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.paths.loading import DisplacementLoading, ForceLoading
 from tactsim.plotting import figures_for
+from tactsim.relaxation import Relaxation
 
 ELASTIC = NeoHookean(c10=500.0)
 
@@ -80,3 +82,36 @@ def test_a_pull_and_a_deep_displacement_are_reported_and_drawn():
 def test_impossible_cases_are_refused(changes, words):
     with pytest.raises(CaseError, match=words):
         held(**changes)
+
+
+def test_the_peak_before_a_jump_is_the_largest():
+    """A Prony series under a ramp, integrated by hand; the mutants sample the jump only from behind, or miss a part."""
+    fractions, times = np.array([0.4, 0.2]), np.array([0.1, 2.0])
+    relaxing = NeoHookean(c10=500.0, relaxation=Relaxation(fractions=tuple(fractions), times=tuple(times)))
+    pieces = [{"kind": "ramp", "to": 1e-4, "duration": 1.0}, {"kind": "jump", "to": 1e-5, "duration": 1.0}]
+    result = ClosedForm(material=relaxing, loading=displaced(*pieces)).run()
+    mean = 1 - fractions.sum() + fractions @ (times * -np.expm1(-1 / times))
+
+    def check(displacement, force):
+        assert displacement == pytest.approx(1e-4, rel=1e-12)
+        assert force == pytest.approx(8 * 3e-3 * force_factor(0.5) * 1000.0 * 1e-4 * mean, rel=1e-9)
+
+    check(*(result.quantities[f"largest_{name}"].value for name in ("displacement", "force")))
+    rows, at_jump = [column(result, name) for name in ("displacement", "force")], column(result, "time") < 1 - 1e-9
+    assert_kills(check, behind=tuple(float(values[at_jump].max()) for values in rows))
+    assert np.count_nonzero(np.abs(column(result, "time") - 1) < 1e-9) == 2
+    smooth = displaced(pieces[0], {"kind": "hold", "duration": 1.0})
+    assert np.count_nonzero(np.abs(column(ClosedForm(material=relaxing, loading=smooth).run(), "time") - 1) < 1e-9) == 1
+
+
+def test_a_sine_of_which_little_is_sampled_is_warned_of():
+    def warned(points):
+        pieces = [{"kind": "jump", "to": 0.2, "duration": 2.0}]
+        pieces.append({"kind": "sine", "amplitude": 0.02, "frequency": 50.0, "duration": 4.0})
+        loading = ForceLoading.model_validate({"control": "force", "pieces": pieces})
+        return [text for text in held(loading=loading, points=points).warnings if "period" in text]
+
+    assert warned(4001) == []
+    (words,) = warned(4000)
+    assert "sine of 50 Hz" in words
+    assert "take 4001" in words

@@ -126,12 +126,19 @@ def test_noise_below_zero_is_read_as_a_force_below_the_line():
     assert np.mean(read) == pytest.approx(-0.132, abs=0.01), "the intercept of the line, not lifted by a cut at 0 V"
 
 
+def sines(*frequencies):
+    waves = [{"kind": "sine", "amplitude": 0.5, "frequency": frequency, "duration": 1.0} for frequency in frequencies]
+    jump = {"kind": "jump", "to": 1.0, "duration": 1.0}
+    return Pieces.model_validate({"kind": "pieces", "loading": {"control": "force", "pieces": [jump, *waves]}})
+
+
 @pytest.mark.parametrize(
     ("force", "words"),
     [
         (Square(kind="square", duration=1e6), "take a shorter force"),
         (Square(kind="square", frequency=150.0), "above half the sampling_rate"),
         (Chirp(kind="chirp", end_frequency=150.0), "above half the sampling_rate"),
+        (sines(1.0, 150.0), "frequency of 150 Hz is above half the sampling_rate"),
     ],
 )
 def test_forces_that_cannot_be_sampled_are_refused(force, words):

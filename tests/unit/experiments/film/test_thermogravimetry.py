@@ -106,6 +106,13 @@ def test_one_reading_has_no_conflict():
     assert result.warnings == ()
 
 
+def test_readings_of_exact_numbers_conflict_without_an_uncertainty():
+    densities = [{"name": "bulk", "density": 560.0}, {"name": "solid", "density": 1800.0}]
+    exact = {"mass_resolution": 0.0, "matrix_density_deviation": 0.0, "filler_densities": densities}
+    (warning,) = ThermogravimetricAnalysis(**LINGSTAT, **exact).run().warnings
+    assert "give 0.1115 to 0.2875: which density" in warning
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [

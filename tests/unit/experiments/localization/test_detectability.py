@@ -99,6 +99,14 @@ def test_less_noise_finds_smaller_lumps(run):
     assert np.all(second[1] < first[1])
 
 
+def test_the_order_of_the_matrices_does_not_matter(run):
+    coarse_first, fine_first = (
+        np.array(run(matrices=matrices, depths=(5e-3,)).run().quantities["smallest_radius"].value, dtype=float)
+        for matrices in ((3, 6), (6, 3))
+    )
+    np.testing.assert_array_equal(fine_first[:, ::-1], coarse_first)
+
+
 def test_what_is_not_found_is_null_and_the_figure_is_drawn(run):
     result = run(noise=50.0, depths=(3e-3, 10e-3)).run()
     assert result.quantities["smallest_radius"].value[0][0] == [None, None]
@@ -121,6 +129,8 @@ def test_what_is_not_found_is_null_and_the_figure_is_drawn(run):
         ({"depths": (25e-3,)}, "outside the block"),
         ({"shear_ratios": (1.0,)}, "plain tissue"),
         ({"side": 60e-3}, "wider than the block"),
+        ({"false_alarms": 1e-4}, "at least 100000, or a higher rate"),
+        ({"draws": 199}, "at least 200, or a higher rate"),
     ],
 )
 def test_impossible_questions_are_refused(change, words):

@@ -306,6 +306,14 @@ def test_noise_free_trials_still_have_a_level():
     assert grid(line, "trigger_level")[0, 0, 0] > 2 * grid(quiet, "trigger_level")[0, 0, 0]
 
 
+def test_phases_of_sampling_count_alike_for_any_number_of_trials():
+    """Noise that reaches no step of the converter makes no error, whether the trials fill their blocks of ten or not."""
+    level = ThresholdSensor(trigger=TriggerLevel(force=1e-3))
+    few = run(noises=(1e-12,), sensor=level, trials=12)
+    assert grid(few, "force_error_deviation")[0, 0, 0] > 1e-6, "the two phases differ"
+    assert abs(grid(few, "noise_error")[0, 0, 0]) < 1e-12, "round-off of means of some 0.3 N"
+
+
 def test_the_case_is_valid():
     experiment = load_case(ROOT / "cases/threshold_trial.yaml").experiment
     assert isinstance(experiment, ThresholdTrial)
