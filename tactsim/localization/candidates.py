@@ -121,12 +121,12 @@ def centres_and_room(axes: Sequence[Array], size: Array) -> tuple[Array, Array]:
 def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
     """Balls at every ``every``-th centre of the table with the tabulated radii nearest to ``radii``, inside the block by a gap.
 
-    All lengths are in m, ``size`` (3,) is that of the block.
+    All lengths are in m, ``size`` (3,) is that of the block. Of some centres only, none may fit.
 
     Raises
     ------
     InputError
-        If none fits, or all radii lie beyond those of the table.
+        If none of all centres fits, or all radii lie beyond those of the table.
     """
     axes = tuple(axis[every // 2 :: every] for axis in response.axes)
     grid, room = centres_and_room(axes, size)
@@ -136,7 +136,7 @@ def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float
         picked = response.values[k][tuple(slice(every // 2, None, every) for _ in range(3))]
         parts.append((grid[fits], np.full(int(fits.sum()), response.radii[k]), picked.reshape(len(grid), -1)[fits]))
     centers, sizes, signals = (np.concatenate(part) for part in zip(*parts, strict=True))
-    if not len(sizes):
+    if not len(sizes) and every == 1:
         raise no_body("ball")
     return Candidates("sphere", centers, centers, sizes, np.ascontiguousarray(signals))
 

@@ -179,6 +179,8 @@ class ModelBasedEstimator(Estimator):
         )
         white = Change(whitened(fit.change, fit.covariance), self.contrast_spread)
         two = white.double(fine, coarse, np.random.default_rng(SEED))
+        if not np.isfinite(two.evidence):
+            return None
         single = max(fit.total + nothing(white.values), white.single(fine).evidence)
         odds = self.second * float(np.exp(np.clip(two.evidence - single, -700, 700)))
         apart = rises_apart(difference - (fit.factor - 1) * np.asarray(readings.reference), readings.noise)

@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from made_grasps import LAYOUT, SIZE, bell_response
+from mutants import assert_kills
 
 from tactsim.errors import InputError, InvalidQuantity
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
@@ -12,7 +13,9 @@ from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
 from tactsim.localization.candidates import Candidates, ball_candidates, tube_candidates
 from tactsim.localization.estimators.hypotheses import CLASSES, HypothesesEstimator
+from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.evidence import Change
+from tactsim.localization.lump_response import LumpResponse
 
 RADII = np.array([2.5e-3, 3.5e-3, 4.5e-3, 5.5e-3])
 NOISE = 2e-3
@@ -89,8 +92,18 @@ def test_single_evidence_is_that_of_the_joint_normal_distribution(response):
     assert change.single(candidates).evidence == pytest.approx(exact, rel=1e-10)
 
 
-def test_the_evidence_of_pairs_is_their_mean_over_all(response):
-    candidates = over_noise(ball_candidates(response, SIZE, [4.5e-3], gap=GAP, every=3), 0.05)
+def some_tubes(response):
+    """Tubes at two heights, of which most at one height cross each other."""
+    tubes = tube_candidates(response, SIZE, [3.5e-3], gap=GAP, closed=False, spacing=6e-3)
+    heights = np.unique(tubes.begins[:, 2])
+    return tubes.chosen(np.isin(tubes.begins[:, 2], heights[[1, -2]]))
+
+
+@pytest.mark.parametrize("kind", ["balls", "tubes"])
+def test_the_evidence_of_pairs_is_their_mean_over_all(response, kind):
+    """Over all pairs that there are: those that overlap are none, and the mutant counts them as pairs that explain nothing."""
+    few = ball_candidates(response, SIZE, [4.5e-3], gap=GAP, every=3) if kind == "balls" else some_tubes(response)
+    candidates = over_noise(few, 0.05)
     values = balls(response, (11e-3, 11e-3, 12e-3), (29e-3, 29e-3, 8e-3)).ravel() / 0.05
     change = Change(values, 5.0)
     exact = []
@@ -101,9 +114,45 @@ def test_the_evidence_of_pairs_is_their_mean_over_all(response):
             covariance = base + 25 * np.outer(candidates.signals[j], candidates.signals[j])
             exact.append(-(values @ np.linalg.solve(covariance, values) + np.linalg.slogdet(covariance)[1]) / 2)
     largest = max(exact)
-    mean = largest + np.log(np.exp(np.array(exact) - largest).sum() / len(candidates) ** 2)
+    mean = largest + np.log(np.exp(np.array(exact) - largest).mean())
+
+    def check(evidence):
+        assert evidence == pytest.approx(mean, abs=0.2)  # scatter of 32 draws
+
     sampled = [change.double(candidates, candidates, np.random.default_rng(seed)).evidence for seed in range(4)]
-    assert np.mean(sampled) == pytest.approx(mean, abs=0.2)  # scatter of 32 draws
+    check(np.mean(sampled))
+    if kind == "tubes":
+        assert_kills(check, overlapping=(np.mean(sampled) + np.log(len(exact) / len(candidates) ** 2),))
+
+
+CUBE = np.full(3, 22e-3)
+
+
+def response_of_cube():
+    """Any numbers, at centres 2 mm apart."""
+    line, radii = (np.arange(11) + 0.5) * 2e-3, np.array([5e-3, 7e-3])
+    values = np.random.default_rng(1).standard_normal((2, 11, 11, 11, 2, 3, 3))
+    return LumpResponse((line, line, line), radii, 0.02 * values)
+
+
+@pytest.mark.parametrize("every", [1, 3, 4, 6])
+def test_pairs_are_sought_in_a_block_with_hardly_any_room_for_two(every):
+    """Two balls of 5 mm fit into opposite corners, where the coarse grid may have none; two of 7 mm do not."""
+    cube, change = response_of_cube(), Change(np.random.default_rng(3).standard_normal(18), 5.0)
+    for radius, exists in ((5e-3, True), (7e-3, False)):
+        fine, coarse = (ball_candidates(cube, CUBE, [radius], gap=GAP, every=step) for step in (1, every))
+        assert np.isfinite(change.double(fine, coarse, np.random.default_rng(1)).evidence) == exists
+
+
+@pytest.mark.parametrize("kind", [HypothesesEstimator, ModelBasedEstimator])
+def test_a_block_without_room_for_two_has_one(kind):
+    layout = LAYOUT.model_copy(update={"pitch": 6e-3, "size": 5e-3})
+    forces = 0.3 + 0.1 * np.random.default_rng(2).standard_normal((2, 2, 3, 3))
+    given = Readings(forces[0], layout, CUBE, reference=forces[1], noise=NOISE, response=response_of_cube())
+    alone = {"classes": ("lump", "two_lumps")} if kind is HypothesesEstimator else {}
+    estimate = kind(radii=(7e-3, 7e-3), **alone).estimate(given)
+    assert len(estimate.inclusions) == 1
+    assert (estimate.classes or {"two_lumps": 0.0})["two_lumps"] == 0
 
 
 @pytest.mark.parametrize("name", ["none", "lump", "two_lumps", "artery"])
