@@ -35,6 +35,8 @@ class MatrixReading:
     """Whether a sample lies outside the range of the converter, or its filtered voltage is not below the supply."""
     strongest_pull: float
     """Largest tension in N that was left out; 0 if no taxel was pulled."""
+    missed: float = 0.0
+    """Largest change of a force in N between the last sample and the last force given."""
 
 
 class MatrixReadout(ForceElectronics):
@@ -86,6 +88,7 @@ class MatrixReadout(ForceElectronics):
             force=sensed.force,
             saturated=recording.saturated | (recording.filtered > self.chain.largest_voltage),
             strongest_pull=float(max(0.0, -force.min(initial=0.0))),
+            missed=float(np.abs(np.maximum(force[-1], 0.0) - sensed.applied[-1]).max()),
         )
 
     def film_of(self, area: float) -> SensorFilm:

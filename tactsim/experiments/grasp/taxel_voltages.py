@@ -17,6 +17,8 @@ OVER_TIME = "at each of readout_time, [time][row][column]"
 ENOUGH_STEPS = 5
 """Steps of time with which the forces read are nearly those of many steps. A grasp of ICF closed by 1 mm, composite film: with
 one step they are 3.7 % above those of twenty, with two 1.1 %, with five 0.3 %, as forces rise ever faster."""
+MISSED = 0.01
+"""Part of the largest force by which a force may change after the last sample."""
 REMEMBERED = 0.01
 """A film counts as remembering its history if its signal under a force that rises in the second half only differs by more than
 this part from that under one that rises evenly."""
@@ -84,6 +86,12 @@ def readout_warnings(readout: MatrixReadout, reading: MatrixReading, area: float
     if reading.strongest_pull > 0:
         pull = format_quantity(reading.strongest_pull, "N")
         warnings.append(f"a taxel is pulled by up to {pull} in the solution; the sensor reads it as no force")
+    if reading.missed > MISSED * float(reading.applied.max()):
+        missed, last = format_quantity(reading.missed, "N"), format_quantity(float(reading.time[-1]), "s")
+        warnings.append(
+            f"the last sample, at {last}, stands for the end, until which the force on a taxel still changes by {missed}; raise "
+            "sampling_rate"
+        )
     if reading.saturated.any():
         count = int(reading.saturated.sum())
         where = "" if (reading.saturated & (reading.applied > 0)).any() else ", all of them without a force"

@@ -17,6 +17,7 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting import figures_for
 from tactsim.results import Quantity, Status
 from tactsim.results.writing import write_result
+from tactsim.sensors.electronics.signal_chain import SignalChain
 from tactsim.sensors.films.capacitive_film import CapacitiveFilm
 from tactsim.sensors.matrix_readout import MatrixReading, MatrixReadout
 
@@ -137,6 +138,22 @@ def test_a_line_that_reads_no_force_at_all_is_warned_of():
         assert any("more than the largest force, 40 mN" in words for words in warnings) == warned
     default = MatrixReadout(scatter=None)
     assert readout_warnings(default, default.read(time, 10 * force, 81e-6), 81e-6) == ()
+
+
+def test_a_last_sample_long_before_the_end_is_warned_of():
+    """A ramp of 0.5 s at 3 Hz is last sampled at a third of a second, at two thirds of its force."""
+    time, force = np.array([0.25, 0.5]), np.array([0.2, 0.4])[:, None, None, None] * np.ones((2, 3, 3))
+    slow = MatrixReadout(chain=SignalChain(sampling_rate=3.0, low_pass=None))
+    reading = slow.read(time, force, 81e-6)
+    assert reading.missed == pytest.approx(0.4 / 3)
+    (late,) = [text for text in readout_warnings(slow, reading, 81e-6) if "last sample" in text]
+    assert "at 333.33 ms" in late
+    assert "by 133.33 mN" in late
+    held = np.append(time, 0.9), np.concatenate([force, force[-1:]])
+    for readout, course in ((MatrixReadout(), (time, force)), (slow, held)):
+        reading = readout.read(*course, 81e-6)
+        assert reading.missed < 1e-12
+        assert not any("last sample" in text for text in readout_warnings(readout, reading, 81e-6))
 
 
 def test_samples_beyond_the_converter_without_a_force_are_told_apart():
