@@ -37,6 +37,8 @@ Place = Callable[[Problem], str]
 
 
 KIND = "case file"
+SWEEP_SCHEMA, SWEEP_SECTION = "tactsim/sweep/1", "sweep"
+"""Schema of a sweep file, and its section that says how samples are drawn."""
 SWEEPS = "tactsim/sweep/"
 """How the schema of a file begins that `tactsim sweep` reads."""
 
@@ -191,16 +193,18 @@ def validated_case(document: Document, place: Place) -> Case:
 
 
 def _check_version(document: Document, place: Place) -> None:
-    version = document.value.get("schema")
-    if version == SCHEMA:
+    version, at = document.value.get("schema"), "schema"
+    if version == SCHEMA and SWEEP_SECTION not in document.value:
         return
-    if "schema" not in document.value:
+    if version == SCHEMA:
+        at, message = SWEEP_SECTION, f"a case has no such section; a sweep begins with 'schema: {SWEEP_SCHEMA}'"
+    elif "schema" not in document.value:
         message = f"missing; the file must begin with 'schema: {SCHEMA}'"
     else:
         message = f"the version {as_written(version)} is not supported; this tactsim reads {SCHEMA!r}"
         if str(version).startswith(SWEEPS):
             message = "this is a sweep of many cases; compute it with: tactsim sweep"
-    raise case_error([Problem(("schema",), document.line(("schema",)), message)], place)
+    raise case_error([Problem((at,), document.line((at,)), message)], place)
 
 
 def _kind_problems(document: Document) -> list[Problem]:

@@ -20,7 +20,7 @@ Prints the quantities of a stored result, or the counts and variables of a data 
 --save draws its main figure, in the form that the ending of the file names. Of a case file, or the name
 of a shipped case, it prints what would be computed and what looks wrong in it, and --save draws the tissue
 at rest with its mesh and what presses on it: seconds, for nothing is solved. Of a sweep file it prints what
-varies, and --save draws the first sample. --web serves the live page of a grasp or a data set of grasps on
+varies and what is stored, and --save draws the first sample. --web serves the live page of a grasp or a data set of grasps on
 this machine, under an address with a random token, until Ctrl-C. --live shows frames as they come, too.
 """
 EXAMPLES = """\
@@ -29,6 +29,7 @@ examples:
   tactsim show results/annulus_icf --save annulus.pdf
   tactsim show lumps.zarr --save taxels.png
   tactsim show my_annulus.yaml --save sketch.png
+  tactsim show grasp_lump_icf --set experiment.upper.tilt_x="3 deg" --save sketch.png
   tactsim show results/grasp_lump_icf --web --reference results/grasp_plain
   my_sensor | tactsim show --web --live -
 
@@ -42,6 +43,7 @@ null or "NaN" is a dead taxel. May be left out: title; closing (m); saturated_up
 WEB_OPTIONS = ("port", "host", "live", "reference", "noise", "learned", "no_browser")
 """Options that say something about the page only."""
 
+SET_OF_A_CASE = "--set: of a case or a sweep that is shown before it is computed only; a result or a data set stays as it is"
 CASE_ENDINGS = (".yaml", ".yml")
 NOISE_WORDS = (
     "standard deviation of what a taxel reads, such as '2 mN'; by default that of a stored localization, 0.6 %% of the largest "
@@ -56,6 +58,8 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     words = "folder that tactsim run or sweep wrote, or a case; may be left out with --live"
     parser.add_argument("result", metavar="RESULT_STORE_OR_CASE", type=Path, nargs="?", help=words)
     parser.add_argument("--save", metavar="FILE", type=Path, help="save the main figure as .png, .svg or .pdf")
+    words = "set path.to.key of a case or sweep before it is shown, as tactsim run does; may be repeated"
+    parser.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help=words)
     parser.add_argument("--web", action="store_true", help="serve the live page and open it in the browser")
     words = "frames: a file that grows, - for standard input (a named pipe: --live - < PIPE), or tcp://127.0.0.1:PORT"
     parser.add_argument("--live", metavar="SOURCE", help=words)
@@ -77,6 +81,8 @@ def run(arguments: argparse.Namespace) -> int:
         Whatever ends the command with an exit code of its own, such as options that do not go together.
     """
     if arguments.web:
+        if arguments.set:
+            raise InputError(SET_OF_A_CASE)
         from tactsim.cli.live_page import run_page
 
         return run_page(arguments)
@@ -89,10 +95,14 @@ def run(arguments: argparse.Namespace) -> int:
             "tactsim show --help says more"
         )
     if (arguments.result / "zarr.json").is_file():
-        return _show_data_set(arguments)
-    if (case := _case_of(arguments.result)) is not None:
-        return _show_case(case, arguments.save, arguments.result)
-    return _show_result(arguments)
+        show = _show_data_set
+    elif (case := _case_of(arguments.result)) is not None:
+        return _show_case(case, arguments)
+    else:
+        show = _show_result
+    if arguments.set:
+        raise InputError(SET_OF_A_CASE)
+    return show(arguments)
 
 
 def _case_of(named: Path) -> Path | None:
@@ -116,16 +126,17 @@ def _case_of(named: Path) -> Path | None:
     return None if case == named else case
 
 
-def _show_case(path: Path, save: Path | None, named: Path) -> int:
+def _show_case(path: Path, arguments: argparse.Namespace) -> int:
     """What a case would compute, in words and as a picture of its bodies at rest."""
     from tactsim.case.loading import SWEEPS, read_document, validated_case
     from tactsim.case.placing import placed
     from tactsim.cli.figures.result_figures import form_of
     from tactsim.results import SolverReport
 
-    form, read = None if save is None else form_of(save), read_document(path)
+    save = arguments.save
+    form, read = None if save is None else form_of(save), read_document(path, arguments.set, option="--set")
     if str(read[0].value.get("schema")).startswith(SWEEPS):
-        return _show_sweep(path, save, form, named)
+        return _show_sweep(path, form, arguments)
     case = validated_case(*read)
     with placed(case, *read):
         result = case.at_rest()
@@ -142,13 +153,14 @@ def _show_case(path: Path, save: Path | None, named: Path) -> int:
     return 0
 
 
-def _show_sweep(path: Path, save: Path | None, form: str | None, named: Path) -> int:
+def _show_sweep(path: Path, form: str | None, arguments: argparse.Namespace) -> int:
     """How many samples a sweep would compute and what varies in them, and a picture of the first at rest."""
-    from tactsim.dataset.sampling.layout import first_case
+    from tactsim.dataset.sampling.layout import first_case, layout_of
     from tactsim.dataset.sampling.sweep import load_sweep
     from tactsim.schema_of_model import value_at
 
-    sweep = load_sweep(path)
+    sweep, save = load_sweep(path, tuple(arguments.set), option="--set"), arguments.save
+    layout = layout_of(sweep)  # refuses what the sweep itself would refuse before its first sample
     case, document = first_case(sweep), sweep.document.value
     console.out(one_line(document.get("title") or path.stem))
     samples = f"{sweep.samples} samples" + (f", {sweep.per_specimen} of each specimen" if sweep.per_specimen > 1 else "")
@@ -156,9 +168,13 @@ def _show_sweep(path: Path, save: Path | None, form: str | None, named: Path) ->
     drawn = [(one.key.removeprefix("experiment."), _distribution_in_words(value_at(document, one.path))) for one in sweep.places]
     for line in aligned(drawn, left=2, indent="  "):
         console.out(line)
+    for role in ("label", "reading"):
+        names = ", ".join(variable.name for variable in layout.variables if variable.role == role)
+        console.out(f"  {role}s: {names or 'none'}")
     if save is not None and form is not None:
         _save_main_figure(case.at_rest(), save, form)
-    console.out(f"  compute it with: {console.command('sweep', named, '--out', f'{path.stem}.zarr')}")
+    changes = [word for change in arguments.set for word in ("--set", change)]
+    console.out(f"  compute it with: {console.command('sweep', arguments.result, *changes, '--out', f'{path.stem}.zarr')}")
     return 0
 
 

@@ -18,6 +18,18 @@ SI_UNITS = ("m", "Pa", "N", "s", "Hz", "m/s", "rad", "ohm", "S", "V", "Pa*s", "J
 """Units in which drawn quantities are stored."""
 MOST_OPTIONS = 100_000
 """Entries of a list or range."""
+ENTRIES = {
+    "uniform": "[least, largest]",
+    "log_uniform": "[least, largest]",
+    "normal": "[mean, standard deviation]",
+    "integer": "[first, last]",
+    "range": "[first, last, number of values]",
+    "values": "[value, value, ...]",
+    "choice": "[option, option, ...]",
+}
+"""Name in a file -> what its list holds."""
+BESIDE = {"choice": "weights", "values": "weights", "normal": "within"}
+"""Name in a file -> the key that may stand beside it."""
 
 
 class Distribution(ABC):
@@ -144,14 +156,16 @@ def distribution(written: dict[str, Any]) -> Distribution:
         With what is wrong and what is expected.
     """
     names = [name for name in written if name in READERS]
-    allowed = {"choice": {"weights"}, "values": {"weights"}, "normal": {"within"}}
-    extra = set(written) - set(names) - (allowed.get(names[0], set()) if len(names) == 1 else set())
-    if len(names) != 1 or extra:
+    if len(names) != 1:
         raise InvalidQuantity(f"{shown(written)} is not one distribution; allowed: one of {', '.join(READERS)}")
-    entries = written[names[0]]
+    name, beside = names[0], BESIDE.get(names[0], "nothing")
+    if extra := [key for key in written if key not in (name, beside)]:
+        raise InvalidQuantity(f"{shown(written)} is not one distribution: {shown(extra[0])} beside {name}; allowed: {beside}")
+    entries = written[name]
     if not isinstance(entries, list) or not 1 <= len(entries) <= MOST_OPTIONS:
-        raise InvalidQuantity(f"{names[0]} takes a list, not {shown(entries)}")
-    return READERS[names[0]](entries, written)
+        most = f" of at most {MOST_OPTIONS} entries" if isinstance(entries, list) and entries else ""
+        raise InvalidQuantity(f"{name} takes a list{most}, {ENTRIES[name]}, not {shown(entries)}")
+    return READERS[name](entries, written)
 
 
 def _bounded(name: str) -> Callable[[list[Any], dict[str, Any]], Distribution]:
@@ -221,7 +235,8 @@ def _pair(name: str, entries: list[Any]) -> Numbers:
 
 def _listed(name: str, entries: Any, count: int) -> list[Any]:
     if not isinstance(entries, list) or len(entries) != count:
-        raise InvalidQuantity(f"{name}: {shown(entries)} must be a list of {count}")
+        meaning = f", {ENTRIES[name]}" if name in ENTRIES else ""
+        raise InvalidQuantity(f"{name}: {shown(entries)} must be a list of {count}{meaning}")
     return entries
 
 

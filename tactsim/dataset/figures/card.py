@@ -23,6 +23,8 @@ MOST_PANELS, MOST_NUMBERED = 12, 8
 TITLE, TITLE_SIZE = 0.3, 9.0
 """Height of a title in inches, and of its letters in points."""
 COLUMNS = 4
+SAME = 1e-9
+"""Relative difference of two numbers that differ by round-off only."""
 SPREAD, TAXELS = "spread.png", "taxels.png"
 FIGURE_FILES = (SPREAD, TAXELS)
 
@@ -95,9 +97,10 @@ def taxels(force: Array, title: str) -> Figure:
 
 
 def _numbers(data: xarray.Dataset) -> dict[str, Spread]:
-    """Labels, then readings of one number, finite values only."""
-    numbers = {}
-    for role in ("label", "reading"):
+    """Labels, what was drawn and is not a multiple of one of them, then readings of one number, finite values only."""
+    numbers: dict[str, Spread] = {}
+    whole: list[Array] = []
+    for role in ("label", "varied", "reading"):
         for name, values in data.data_vars.items():
             if values.attrs["role"] != role or "flag_values" in values.attrs or (role == "reading" and values.ndim > 1):
                 continue
@@ -106,6 +109,17 @@ def _numbers(data: xarray.Dataset) -> dict[str, Spread]:
             parts = {f"{name} {along}": content[..., k] for k, along in enumerate("xyz")} if vector else {str(name): content}
             for part, components in parts.items():
                 finite = components[np.isfinite(components)]
-                if finite.size and np.ptp(finite) > 0:
+                repeated = role == "varied" and any(_proportional(components, other) for other in whole)
+                whole.append(components)
+                if finite.size and np.ptp(finite) > 0 and not repeated:
                     numbers[part] = Spread(finite, str(values.attrs["units"]))
     return numbers
+
+
+def _proportional(drawn: Array, label: Array) -> bool:
+    """Whether a number (n,) is a multiple of another wherever it is finite, as a coefficient is of the shear modulus."""
+    if label.size != drawn.size:
+        return False
+    known = np.isfinite(drawn)
+    first, second = drawn[known], label.reshape(drawn.shape)[known]
+    return bool(np.allclose(first * np.abs(second).max(initial=0.0), second * np.abs(first).max(initial=0.0), rtol=SAME, atol=0))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -36,6 +37,8 @@ SPHERE = 1
 """Number of a ball among the kinds of inclusions of a store."""
 LEAST_NOISE = 1e-9
 """Of a reading over the largest: below it is round-off."""
+JAW_KEYS = (("upper",), ("lower",))
+"""Where a case describes its jaws."""
 SENSED = (("readout",), ("time",))
 """Parts of a grasp that say how it was read."""
 
@@ -148,6 +151,9 @@ def judged_samples(
     refuse_reopened(experiment, Path(store).name)
     plain = PlainGrasp.of_results(reference)
     check_same(np.asarray(experiment.block.size), experiment.matrix, plain.readings, "the store")
+    if of_jaws := [place.key for place in sweep.places if place.path[1:2] in JAW_KEYS]:
+        words = "varies among the samples, not in the reference: what it changes in the readings is taken for lumps"
+        warnings.warn(f"{' and '.join(of_jaws)} {words}", stacklevel=2)
     forces = np.asarray(data[source].values[:, -1], dtype=float)
     truths = _truths(data, float(experiment.block.size[2]))
     plain.at(np.array([truth.closing for truth in truths]))

@@ -8,13 +8,13 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from tactsim.case.loading import SWEEP_SCHEMA
 from tactsim.case.overrides import set_value
 from tactsim.case.writing import case_document
 from tactsim.case.yaml_reading import Document, YamlProblems
 from tactsim.dataset.running.executors import Executor, LocalWorkers
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.running.run import SweepRun, Tally
-from tactsim.dataset.sampling.settings import SCHEMA
 from tactsim.dataset.sampling.sweep import SECTION, Sweep, sweep_of_document
 from tactsim.dataset.store.files import FIGURES
 from tactsim.dataset.use.card import adopt_earlier_files, write_card
@@ -117,7 +117,7 @@ def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Swe
     if not isinstance(variation, Variation):
         raise InputError(f"sweep: {shown(variation)} does not vary; expected experiment.vary({{'key.path': uniform(low, high)}})")
     whole = case_document(variation.case or variation.experiment, complete=True)
-    document = Document(whole | {"title": title or whole["title"], "schema": SCHEMA})
+    document = Document(whole | {"title": title or whole["title"], "schema": SWEEP_SCHEMA})
     try:
         for place, distribution in variation.places.items():
             keys = place.split(".")

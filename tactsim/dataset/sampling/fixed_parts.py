@@ -61,7 +61,9 @@ class FixedParts:
         """The distribution that a mapping of one key may have been meant as."""
         written = value_at(self.document, place)
         key = next(iter(written)) if isinstance(written, dict) and len(written) == 1 else ""
-        return suggestion(str(key), READERS) if key else ""
+        if not key or (meant := suggestion(str(key), READERS)):
+            return meant if key else ""
+        return f", or a distribution: {', '.join(READERS)}" if isinstance(written[key], list) else ""
 
 
 def _option(place: Path, used: dict[Path, float]) -> Path:

@@ -9,8 +9,9 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from tactsim.case.json_schema import DRAFT, case_json_schema, described
+from tactsim.case.loading import SWEEP_SCHEMA
 from tactsim.case.model import Output
-from tactsim.dataset.sampling.settings import SCHEMA, SweepSettings
+from tactsim.dataset.sampling.settings import SweepSettings
 from tactsim.dataset.sampling.sweep import SECTION
 from tactsim.interfaces.distributions import MOST_OPTIONS
 from tactsim.units import Length
@@ -34,7 +35,7 @@ def sweep_json_schema() -> Fragment:
     definitions |= {VARYING[kind]: _distributions(kind, item) for kind, item in ITEMS.items()}
     definitions |= {f"{PREFIX}{name}": definition for name, definition in settings.pop("$defs", {}).items()}
     properties = {
-        "schema": case["properties"]["schema"] | {"const": SCHEMA, "description": "Version of the sweep format."},
+        "schema": case["properties"]["schema"] | {"const": SWEEP_SCHEMA, "description": "Version of the sweep format."},
         "title": case["properties"]["title"],
         "experiment": _inner(case["properties"]["experiment"], "#/properties/experiment"),
         "output": case["properties"]["output"],

@@ -180,6 +180,8 @@ def _check_splits(sweep: Sweep, labels: list[Variable]) -> None:
             if along and not sweep.checked:  # those of a store stay readable
                 single = ", ".join(one.name for one in labels if set(one.dimensions) <= {"inclusion"})
                 raise sweep.error(place, f"has several numbers, along {along[0]}; labels of one number: {single or 'none'}")
+            if condition.empty and not sweep.checked:
+                raise sweep.error(place, f"nothing is above {condition.above:g} and below {condition.below:g}")
             meanings = known[name].meanings
             if isinstance(condition.equal, str) and condition.equal not in meanings:
                 raise sweep.error((*place, "equal"), f"{condition.equal!r}; allowed: {', '.join(meanings) or 'a number'}")

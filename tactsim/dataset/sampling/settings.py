@@ -12,7 +12,6 @@ from tactsim.model import FrozenModel
 from tactsim.refusals import as_written
 from tactsim.units import NonNegative, Positive, Time
 
-SCHEMA = "tactsim/sweep/1"
 NO_SPLIT = "none"
 LICENCE = "CC-BY-4.0"
 OF_THE_CARD = ("title", "limits", "license")
@@ -46,6 +45,11 @@ class Condition(FrozenModel):
         if self.above is None and self.below is None and self.equal is None:
             raise ValueError("a condition needs above, below or equal")
         return self
+
+    @property
+    def empty(self) -> bool:
+        """Whether no number satisfies it."""
+        return self.above is not None and self.below is not None and self.above >= self.below
 
 
 Share = Annotated[float, Field(ge=0, le=1)]

@@ -15,18 +15,18 @@ from typing import Any
 from pydantic import ValidationError
 
 from tactsim.case.explaining import problems_of
+from tactsim.case.loading import SWEEP_SCHEMA, SWEEP_SECTION, case_error, read_document
 from tactsim.case.loading import Place as Where
-from tactsim.case.loading import case_error, read_document
 from tactsim.case.model import SCHEMA as CASE_SCHEMA
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
-from tactsim.dataset.sampling.settings import LICENCE, OF_THE_CARD, SCHEMA, SweepSettings
+from tactsim.dataset.sampling.settings import LICENCE, OF_THE_CARD, SweepSettings
 from tactsim.dataset.store.arrays import MOST_SAMPLES
 from tactsim.errors import CaseError, InputError, suggestion
 from tactsim.interfaces.distributions import READERS, Distribution, Listed, distribution
 from tactsim.refusals import as_written
 from tactsim.schema_of_model import value_at
 
-SECTION = "sweep"
+SECTION = SWEEP_SECTION
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +62,7 @@ class Sweep:
         section = self.settings.model_dump(mode="json") | {"samples": self.samples}
         if section["license"] == LICENCE:
             del section["license"]  # so that the text of stores from before there was the key is the same
-        return json.dumps({**self.document.value, "schema": SCHEMA, SECTION: section}, sort_keys=True, allow_nan=False)
+        return json.dumps({**self.document.value, "schema": SWEEP_SCHEMA, SECTION: section}, sort_keys=True, allow_nan=False)
 
     @property
     def folder(self) -> str | None:
@@ -145,9 +145,9 @@ def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
 def _sweep(document: Document, where: Where, samples: int | None, checked: bool = False) -> Sweep:
     value = dict(document.value)
     try:
-        if value.get("schema") != SCHEMA:
+        if value.get("schema") != SWEEP_SCHEMA:
             stated = as_written(value["schema"]) if "schema" in value else "missing"
-            raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SCHEMA}'"))
+            raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SWEEP_SCHEMA}'"))
         settings = _settings(document, value.pop(SECTION, None), units=not checked)
         value["schema"] = CASE_SCHEMA
         places = tuple(places_of(value, ()))

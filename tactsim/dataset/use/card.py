@@ -101,12 +101,12 @@ def card_text(store: Store, sweep: Sweep, layout: Layout) -> str:
 def _how(store: Store, sweep: Sweep) -> list[str]:
     attributes, settings = store.attributes, sweep.settings
     versions = plain(", ".join(f"{name} {number}" for name, number in attributes["versions"].items()))
-    shared = f"{sweep.per_specimen} samples share a specimen. " if sweep.per_specimen > 1 else ""
+    shared = f" {sweep.per_specimen} samples share a specimen." if sweep.per_specimen > 1 else ""
     hypercube = " (and on the number of samples: a Latin hypercube)" if settings.design == "latin_hypercube" else ""
     specimens, draws = redrawn(store)
     return [
         "## How it was made",
-        f"Design {settings.design}, seed {settings.seed}, {store.samples} samples. {shared}",
+        f"Design {settings.design}, seed {settings.seed}, {store.samples} samples.{shared}",
         f"Sample k depends on the seed and on k only{hypercube}.",
         f"Draws whose case is impossible are drawn again: {draws} draws of {specimens} specimens were refused.",
         f"Computed by tactsim {plain(', '.join(attributes['codes']))}; {versions}.",
@@ -146,12 +146,16 @@ def never_drawn_lines(store: Store, sweep: Sweep) -> list[str]:
 
 def empty_split_lines(counts: Mapping[str, int], splits: Splits) -> list[str]:
     """A sentence on parts of the data set without a sample that is done, if there are any, by the counts of those."""
-    if not (names := empty_splits(counts, splits)):
-        return []
-    which = f"the split {names[0]} has" if len(names) == 1 else f"the splits {', '.join(names)} have"
-    shares = [share for name, share in split_shares(splits).items() if name in names]
-    needed = f" ({_specimens_needed(min(shares))})" if shares else ""
-    return [f"warning: {which} no sample that is done; take more samples{needed}, or other shares in sweep.splits."]
+    empty, lines = empty_splits(counts, splits), []
+    shares = {name: share for name, share in split_shares(splits).items() if name in empty}
+    if shares:
+        which = f"the splits {', '.join(shares)} have" if len(shares) > 1 else f"the split {next(iter(shares))} has"
+        needed = _specimens_needed(min(shares.values()))
+        lines = [f"warning: {which} no sample that is done; take more samples ({needed}), or other shares in sweep.splits."]
+    if rules := [name for name in empty if name not in shares]:
+        remedy = "take more samples, or compare its bounds, in SI, with the ranges of the labels on the card"
+        lines.append(f"warning: no sample that is done satisfies the rule of {' or '.join(rules)}; {remedy}.")
+    return lines
 
 
 def _specimens_needed(share: float) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import FAILED, refuse_link
-from tactsim.dataset.store.files import CARD
+from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import load, split_names
 from tactsim.errors import InputError, StorageError, TactsimError
@@ -25,6 +25,7 @@ from tactsim.outside.text import one_line
 from tactsim.storage.building import built_beside, remove_leftover
 from tactsim.storage.files import naming, write_bytes
 from tactsim.storage.locking import only_one
+from tactsim.storage.own_files import OwnFiles
 
 if TYPE_CHECKING:
     import xarray
@@ -38,6 +39,19 @@ LONGEST = 6 * 3600.0
 """Time in s after which writing is given up: no disk is so slow."""
 
 
+OF_HDF5 = (
+    "import h5py",
+    'with h5py.File("EXPORT.h5") as file:',
+    '    values = file["NAME"][...]  # the sample first; units and dimensions are attributes',
+    '    samples = file["sample"][...]  # their numbers in the data set',
+)
+OF_SHARDS = (
+    "import numpy, pandas",
+    'index = pandas.read_parquet("index.parquet")  # a row for each sample: numbers and texts, and its place in the shards',
+    'first = numpy.load("shard_00000.npz")  # arrays of the samples with index.shard == 0; dataset.json has dimensions and units',
+    'values = first["NAME"][index.row[index.shard == 0]]',
+)
+"""How an export is read, for its card; NAME stands for a variable."""
 HDF5 = (".h5", ".hdf5")
 """Endings of files; folders have none."""
 
@@ -75,8 +89,9 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
                 _hdf5_apart(store, split, waiting, target)
             else:
                 _shards(data, Store.open(store).attributes | {"failed": _failed(store, split)}, waiting)
-                if card := _card(Path(store)):
+                if card := _card(Path(store), data, split, OF_SHARDS):
                     write_bytes(waiting / CARD, card.encode())
+                    _copy_figures(Path(store), waiting)
     return int(data.sizes["sample"])
 
 
@@ -85,13 +100,40 @@ def _refuse_inside(target: Path, store: Path) -> None:
         raise StorageError(f"{one_line(target)} lies in the data set itself; choose another place with --to")
 
 
-def _card(store: Path) -> str:
-    """The card of a store, empty if it has none."""
+def _card(store: Path, data: xarray.Dataset, split: str | Iterable[str] | None, reading: tuple[str, ...]) -> str:
+    """The card of a store with what was exported of it and how that is read before its sections; empty if the store has none."""
     path = store / CARD
     if not os.path.lexists(path):
         return ""
     refuse_link(path)
-    return opened(path, "description").text()
+    head, mark, rest = opened(path, "description").text().partition("\n## ")
+    parts = "all splits" if split is None else "the split " + (split if isinstance(split, str) else ", ".join(split))
+    count = f"{data.sizes['sample']} samples that are done, of {parts}."
+    name = max(
+        _arrays(data), key=lambda one: (data[one].attrs["role"] == "reading", data[one].attrs["units"] == "N", data[one].size)
+    )
+    lines = ["## This export", f"{count} What follows is about the whole data set; read the export so:", "```python"]
+    here = "\n".join([*lines, *(line.replace("NAME", name) for line in reading), "```", ""])
+    return f"{head.rstrip()}\n\n{here}{mark}{rest}"
+
+
+def _copy_figures(store: Path, target: Path) -> None:
+    """Copies the pictures that the card shows."""
+    files = OwnFiles(store)
+    for name in files.sums():
+        if name.startswith(f"{FIGURES}/") and files.written(name):
+            (target / FIGURES).mkdir(exist_ok=True)
+            write_bytes(target / name, (store / name).read_bytes())
+
+
+def _arrays(data: xarray.Dataset) -> list[str]:
+    """Names of the variables that are several numbers of a sample."""
+    return [str(name) for name, values in data.data_vars.items() if values.ndim > 1]
+
+
+def _labels(data: xarray.Dataset) -> dict[str, Array]:
+    """Dimension -> its labels (n,), such as the jaws, of those that have labels."""
+    return {str(name): values.values for name, values in data.coords.items() if name != "sample"}
 
 
 def _failed(store: str | Path, split: str | Iterable[str] | None) -> list[dict[str, Any]]:
@@ -132,6 +174,8 @@ def _hdf5(data: xarray.Dataset, attributes: dict[str, Any], target: Path, *, fai
         file["failed/sample"] = np.array([sample["sample"] for sample in failed], dtype=np.int64)
         file["failed/reason"] = np.array([sample["reason"].encode() for sample in failed], dtype=h5py.string_dtype())
         file["sample"] = data["sample"].values
+        for along, labels in _labels(data).items():
+            file[along] = labels if labels.dtype.kind in "iu" else labels.astype("S")
         for name, values in data.data_vars.items():
             content = np.asarray(values.values)
             written = content if content.dtype.kind in "fiub" else np.array([str(value).encode() for value in content])
@@ -157,7 +201,8 @@ def _shards(data: xarray.Dataset, attributes: dict[str, Any], target: Path) -> N
         arrays = {str(name): values.values for name, values in part.data_vars.items() if values.ndim > 1}
         np.savez(target / f"shard_{number:05d}.npz", allow_pickle=False, sample=part["sample"].values, **arrays)
     described = {str(name): {"dimensions": list(v.dims), **v.attrs} for name, v in data.data_vars.items()}
-    text = json.dumps({"attributes": attributes, "variables": described}, indent=1, default=_listed)
+    content = {"attributes": attributes, "labels": _labels(data), "variables": described}
+    text = json.dumps(content, indent=1, default=_listed)
     (target / META).write_text(text + "\n", encoding="utf-8")
 
 
@@ -194,7 +239,8 @@ def main(store: str, target: str, splits: str) -> int:
     names = json.loads(splits)
     try:
         attributes = Store.open(store).attributes
-        _hdf5(load(store, split=names), attributes, Path(target), failed=_failed(store, names), card=_card(Path(store)))
+        data, failed = load(store, split=names), _failed(store, names)
+        _hdf5(data, attributes, Path(target), failed=failed, card=_card(Path(store), data, names, OF_HDF5))
     except TactsimError as error:
         sys.stderr.write(f"{one_line(error)}\n")
         return StorageError.exit_code

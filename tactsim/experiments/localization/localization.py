@@ -16,6 +16,7 @@ from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import EstimatedShape, LocalizedGrasp
 from tactsim.experiments.localization.source import (
     away_from_truth,
+    jaw_notes,
     readings_of,
     reference_notes,
     stiffness_ratios,
@@ -166,7 +167,10 @@ class Localization(Experiment):
             warnings.append(f"{silent_words(silent)}; name dead taxels by the key dead")
         if self._leaves_reference_out(readings):
             warnings.append("the reference was not used: this estimator reads the forces as they are; take background: reference")
-        return warnings if plain is None else [*warnings, *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
+        if plain is None:
+            return warnings
+        reference = plain.scene_as(GraspScene)
+        return [*warnings, *reference_notes(reference.true_inclusions), *jaw_notes(stored.scene_as(GraspScene), reference)]
 
 
 def _of_the_estimate(readings: Readings, estimate: Estimate) -> list[str]:

@@ -17,6 +17,7 @@ from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, Source, has_taxels, jaws_at_end, saturated_taxels
 from tactsim.interfaces.readings import Readings
+from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.homogeneous import stiffness_ratio
 from tactsim.refusals import first_fault
 from tactsim.results.reading import read_basis, read_result
@@ -25,6 +26,10 @@ from tactsim.units import format_quantity
 
 SAME_CLOSING = 1e-3
 """Largest relative difference of the closing of the reference."""
+SAME_JAW = 1e-6
+"""Difference in m, or in rad, of two jaws that are the same."""
+JAW_LENGTHS, JAW_ANGLES = ("width", "depth", "fillet"), ("tilt_x", "tilt_y")
+"""What of a jaw the tissue feels."""
 
 
 def stored_grasp(folder: str) -> Result:
@@ -140,6 +145,20 @@ def reference_notes(inclusions: Sequence[Inclusion]) -> tuple[str, ...]:
         return ()
     what = "an inclusion" if len(inclusions) == 1 else f"{len(inclusions)} inclusions"
     return (f"the reference holds {what} of another material than the tissue: only what differs from it can be found",)
+
+
+def jaw_notes(grasp: GraspScene, reference: GraspScene) -> tuple[str, ...]:
+    """What the user must know of a reference that was grasped by jaws of another form, tilt or place."""
+    notes = []
+    for side in JAWS:
+        here, there = grasp.jaws[side], reference.jaws[side]
+        pairs = {name: (getattr(here, name), getattr(there, name)) for name in JAW_LENGTHS + JAW_ANGLES}
+        pairs |= {f"middle along {'xy'[k]}": (grasp.place(side)[k], reference.place(side)[k]) for k in range(2)}
+        for name, values in pairs.items():
+            if abs(values[0] - values[1]) > SAME_JAW:
+                own, other = (format_quantity(float(value), "rad" if name in JAW_ANGLES else "m") for value in values)
+                notes.append(f"{name} of the {side} jaw is {own}, in the reference {other}")
+    return (f"{'; '.join(notes)}: what this changes in the readings is taken for lumps",) if notes else ()
 
 
 def unfinished_notes(grasp: Result, folder: str) -> tuple[str, ...]:

@@ -116,6 +116,12 @@ def test_a_union_with_a_word_names_both(case_file: Path) -> None:
     assert line.endswith("choices: 'auto'")
 
 
+def test_a_sweep_with_the_schema_of_a_case_is_answered_with_that_of_a_sweep(case_file: Path) -> None:
+    """Each of its distributions was refused instead."""
+    (line,) = refused(case_file, CASE_TEXT + "  friction: {uniform: [0, 1]}\nsweep: {samples: 3}\n")
+    assert line.endswith("sweep: a case has no such section; a sweep begins with 'schema: tactsim/sweep/1'")
+
+
 def test_the_missing_experiment_is_told(case_file: Path) -> None:
     (line,) = refused(case_file, "schema: tactsim/case/1\n")
     assert line.startswith("case.yaml:1: experiment: missing; expected a mapping with a kind of pretence")

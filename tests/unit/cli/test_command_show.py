@@ -15,6 +15,7 @@ from tactsim.cli.command_show import NOISE_WORDS
 from tactsim.interfaces.readings import RESOLUTION, ROUNDING_NOISE
 from tactsim.live.sources.noise import MESH_SHARE
 from tactsim.results import Status, StepRecord, write_result
+from tactsim.shipped import CASES
 
 
 @pytest.fixture
@@ -96,9 +97,35 @@ def test_a_sweep_is_shown_before_it_is_computed(tmp_path: Path, capsys: pytest.C
     assert "  specimen.material.c10  log-uniform 1 kPa, 10 kPa\n" in out
     assert "  specimen.thickness     choice 5 mm, 10 mm, 15 mm\n" in out
     assert out.endswith("compute it with: tactsim sweep sweep_annulus --out sweep_annulus.zarr\n")
+    assert "\n  labels: " in out
+    assert "threshold_pressure" in next(line for line in out.splitlines() if line.startswith("  readings: "))
     assert (tmp_path / "first.svg").is_file()
     assert main(["show", "sweep_arteries"]) == 0
     assert "choice a list of 1, a list of 2, a list of 1, a list of 2, an empty list; weights" in capsys.readouterr().out
+
+
+def test_a_sweep_that_would_be_refused_is_not_shown_as_sound(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A label that there is not was met only by the sweep itself."""
+    text = (CASES / "sweep_annulus.yaml").read_text(encoding="utf-8")
+    (tmp_path / "s.yaml").write_text(text.replace("thin: {thickness:", "thin: {thicknes:"), encoding="utf-8")
+    assert main(["show", str(tmp_path / "s.yaml")]) == 2
+    assert "sweep.splits.out_of_distribution.thin.thicknes: unknown label (did you mean 'thickness'?)" in capsys.readouterr().err
+
+
+def test_a_case_is_shown_with_a_key_changed(capsys: pytest.CaptureFixture[str]) -> None:
+    change = "experiment.specimen.thickness=7 mm"
+    assert main(["show", "sweep_annulus", "--set", change]) == 0
+    out = capsys.readouterr().out
+    assert "specimen.thickness" not in out.split("labels:")[0]
+    assert out.endswith("tactsim sweep sweep_annulus --set 'experiment.specimen.thickness=7 mm' --out sweep_annulus.zarr\n")
+    assert main(["show", "annulus_icf", "--set", "experiment.specimen.thickness=-7 mm"]) == 2
+    assert "--set experiment.specimen.thickness: '-7 mm' is out of range" in capsys.readouterr().err
+
+
+def test_no_key_of_a_result_is_changed(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    for other in ([], ["--web"]):
+        assert main(["show", str(folder), "--set", "experiment.friction=0.1", *other]) == 2
+        assert "--set: of a case or a sweep" in capsys.readouterr().err
 
 
 def test_a_folder_of_the_name_of_a_case_comes_first(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -11,12 +11,13 @@ from types import ModuleType
 
 import numpy as np
 import pytest
+import xarray
 from drawn import colliding_words, text_of
 from sweeps import TEXT, Inline, run_sweep, sweep_file
 
 import tactsim as ts
 from tactsim.dataset.cost import cost_of
-from tactsim.dataset.figures.card import Spread, spread, taxels
+from tactsim.dataset.figures.card import Spread, _numbers, spread, taxels
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.layout import layout_of
 from tactsim.dataset.sampling.sweep import load_sweep
@@ -138,6 +139,19 @@ def test_the_figures_of_a_card_have_a_title_and_words_that_stand_clear() -> None
         assert colliding_words(figure) == []
         assert figure.get_suptitle() == "Lumps: 3 samples"
     assert "mean force in µN" in text_of(figures[0])
+
+
+def test_what_was_drawn_has_a_histogram_unless_a_label_says_the_same() -> None:
+    """The tilt of a jaw, which is no label, was in no picture of the card."""
+    modulus = np.array([6e3, 8e3, 7e3])
+    spreads = {
+        "shear_modulus": ("label", modulus),
+        "varied_c10": ("varied", np.where(modulus > 7e3, np.nan, modulus / 2)),  # of samples that drew another material
+        "varied_tilt": ("varied", np.array([-0.01, 0.02, 0.0])),
+        "volume_ratio": ("reading", np.array([0.9, 0.95, 0.93])),
+    }
+    variables = {name: ("sample", values, {"role": role, "units": "1"}) for name, (role, values) in spreads.items()}
+    assert list(_numbers(xarray.Dataset(variables))) == ["shear_modulus", "varied_tilt", "volume_ratio"]
 
 
 def test_ticks_of_narrow_ranges_are_not_written_over_each_other() -> None:

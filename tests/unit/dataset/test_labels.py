@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import xarray
@@ -17,6 +19,7 @@ from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.stored import stored_sweep
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import consolidate
+from tactsim.dataset.use.export import exported
 
 LABELS = {"jaw": ["upper", "lower"], "row": [1, 2, 3], "column": [1, 2, 3], "axis": ["x", "y", "z"]}
 
@@ -63,6 +66,17 @@ def test_xarray_selects_a_taxel_by_its_jaw_and_row_without_tactsim(grasps: Path)
         np.testing.assert_array_equal(chosen, force.values[:, :, 1, 0, 1:])
         np.testing.assert_array_equal(data["inclusion_center"].sel(axis="z").values, data["inclusion_center"].values[..., 2])
     assert faults(grasps) == []
+
+
+def test_an_export_names_jaws_and_axes_as_the_store_does(grasps: Path, tmp_path: Path) -> None:
+    """Which jaw comes first was to be read out of the description of a variable."""
+    exported(grasps, tmp_path / "g.h5")
+    exported(grasps, tmp_path / "g")
+    with h5py.File(tmp_path / "g.h5") as file:
+        assert {name: file[name][...].astype("U").tolist() for name in LABELS} == {
+            name: list(map(str, labels)) for name, labels in LABELS.items()
+        }
+    assert json.loads((tmp_path / "g" / "dataset.json").read_text(encoding="utf-8"))["labels"] == LABELS
 
 
 def test_an_old_store_is_read_with_labels_and_gets_them_when_it_is_resumed(grasps: Path, made: Path) -> None:

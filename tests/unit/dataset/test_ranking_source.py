@@ -81,6 +81,14 @@ def test_a_reference_with_a_lump_is_warned_of(tmp_path: Path, plain: str) -> Non
         PlainGrasp.of_results([str(tmp_path / "lump")])
 
 
+def test_jaws_that_vary_among_the_samples_are_warned_of(tmp_path: Path, plain: str) -> None:
+    """Lumps were located twice as badly on jaws that lean, and nothing said why."""
+    jaw = "  upper: {tilt_x: {uniform: [-1 deg, 1 deg]}}\n  matrix:"
+    place = made_store(tmp_path, response(), text=TEXT.replace("  matrix:", jaw, 1))
+    with pytest.warns(UserWarning, match=r"^experiment\.upper\.tilt_x varies among the samples, not in the reference"):
+        judged_samples(place, [plain], source="taxel_force")
+
+
 def test_the_noise_of_readings_is_as_large_as_stated() -> None:
     samples = made_samples(60, response())
     for multiple in (1.0, 4.0):

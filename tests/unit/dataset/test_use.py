@@ -37,6 +37,7 @@ from tactsim.dataset.use.counts import failures
 from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.interfaces.variable import Variable, reading
 from tactsim.storage.building import MARK
+from tactsim.storage.own_files import OwnFiles
 
 
 def test_splits_are_apart_and_together_all(kept: Path) -> None:
@@ -209,10 +210,39 @@ def test_an_export_reports_what_failed(store: Path, tmp_path: Path) -> None:
         assert file["failed/sample"][...].tolist() == [3]
         assert file["failed/reason"][0].decode() == "ConvergenceError: it — would not"
         assert 3 not in file["sample"][...]
-        assert file["card"][()].decode() == "# A small sweep — its card\n"
+        assert (
+            file["card"][()].decode().startswith("# A small sweep — its card\n\n## This export\n23 samples that are done, of all")
+        )
     described = json.loads((tmp_path / "e" / "dataset.json").read_text(encoding="utf-8"))
     assert described["attributes"]["failed"] == [{"sample": 3, "reason": "ConvergenceError: it — would not"}]
-    assert (tmp_path / "e" / "README.md").read_bytes() == (store / "README.md").read_bytes()
+    assert (tmp_path / "e" / "README.md").read_text(encoding="utf-8").startswith("# A small sweep — its card\n\n## This export\n")
+
+
+@pytest.mark.usefixtures("hdf5_here")
+@pytest.mark.parametrize("name", ["EXPORT.h5", "shards"])
+def test_the_card_of_an_export_is_about_what_was_exported(
+    store: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    """It told to open a Zarr store, and showed pictures that were not there."""
+    OwnFiles(store).replace("figures/spread.png", b"spread")
+    text = "# Sweep\n\n## Figures\n![spread](figures/spread.png)\n"
+    (store / "README.md").write_text(text, encoding="utf-8")
+    assert main(["data", "export", str(store), "--to", str(tmp_path / name), "--split", "train"]) == 0
+    monkeypatch.chdir(tmp_path if name.endswith(".h5") else tmp_path / name)
+    if name.endswith(".h5"):
+        with h5py.File(name) as file:
+            written = file["card"][()].decode()
+    else:
+        written = Path("README.md").read_text(encoding="utf-8")
+        assert Path("figures/spread.png").read_bytes() == b"spread"
+    data, found = load(store, split="train"), dict[str, np.ndarray]()
+    head, code, rest = written.split("```")
+    assert head == f"# Sweep\n\n## This export\n{data.sizes['sample']} samples that are done, of the split train. " + (
+        "What follows is about the whole data set; read the export so:\n"
+    )
+    assert rest == text.removeprefix("# Sweep")
+    exec(code.removeprefix("python\n"), {}, found)  # noqa: S102  the card is ours
+    np.testing.assert_array_equal(found["values"], data["force"].values)
 
 
 def test_shards_hold_the_same_with_an_index(kept: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -236,6 +236,20 @@ def test_saturated_taxels_of_read_forces_are_not_trusted(folders, tmp_path):
     assert any("neighbours: 1" in words for words in result.warnings)
 
 
+def test_other_jaws_in_the_reference_are_named(folders, tmp_path):
+    """Readings that do not fit were put down to friction, closing or inclusions, though the jaws are known."""
+    other = grasp(PLAIN, apart=0.5e-3)
+    jaw = other.scene.jaws["lower"].model_copy(update={"tilt_x": np.radians(2), "width": 30e-3})
+    scene = other.scene.model_copy(update={"jaws": other.scene.jaws | {"lower": jaw}})
+    reference = stored(tmp_path / "tilted", replace(other, scene=scene))
+    (warning,) = [words for words in run(folders, reference=reference).warnings if "is taken for lumps" in words]
+    assert warning.startswith(
+        "middle along x of the upper jaw is 20 mm, in the reference 20.5 mm; width of the lower jaw is 40 mm, in the reference "
+        "30 mm; tilt_x of the lower jaw is 0°, in the reference 2°: what this changes"
+    )
+    assert not any("is taken for lumps" in words for words in run(folders).warnings)
+
+
 def test_what_does_not_fit_is_refused(folders, tmp_path):
     other = stored(tmp_path / "closing", grasp(PLAIN, closing=0.9e-3))
     with pytest.raises(InputError, match="closed by 1 mm, those of the reference by 900 µm"):
