@@ -245,6 +245,7 @@ class _Solution:
         for load in self._forces.loads:
             load.add_stiffness(data, u)
         system = contact_system(body.pattern, constraints, data, interfaces, now)
+        self.factored = None  # by a solver that fails, the last factor is lost
         step = solved(solver, system, -constraints.free(self._residual(state, now)), accuracy)
         border = None if control is None else control.border([interface.surface for interface in interfaces], now)
         along = None if border is None else resolved(solver, system.matrix, constraints.free(border.column), accuracy)
@@ -267,7 +268,8 @@ class _Solution:
 
     def _damped(self, before: NewtonState, step: NewtonStep) -> tuple[float, Kinematics]:
         """Largest step length, halving from one, that keeps every element right side out."""
-        floor, damping = self._options.volume_floor * min(1.0, float(before.kinematics.J.min())), 1.0
+        least, damping = float(self._body.oriented_volume_ratio(before.kinematics).min()), 1.0
+        floor = self._options.volume_floor * min(1.0, least)
         while damping >= self._options.smallest_damping:
             after = self._admissible(before.unknowns + damping * step.unknowns, floor)
             if after is not None:
@@ -279,10 +281,8 @@ class _Solution:
 
     def _admissible(self, unknowns: Array, floor: float) -> Kinematics | None:
         after = self._body.kinematics(unknowns)
-        J = self._body.oriented_volume_ratio(after)
-        kept = J if not self._body.linear.any() else J[~self._body.linear]
-        ok = np.isfinite(J).all() and (not kept.size or kept.min() > floor)  # no J is finite where an entry of F is not
-        return after if ok else None
+        finite = np.isfinite(after.J).all()  # no J is where an entry of F is not
+        return after if finite and self._body.oriented_volume_ratio(after).min() > floor else None
 
 
 def _gone_astray(before: NewtonState, after: NewtonState) -> bool:

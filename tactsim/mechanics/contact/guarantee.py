@@ -128,8 +128,8 @@ def _finite(arrays: Sequence[Array]) -> bool:
 
 
 def _inside_out(body: Body, kinematics: Kinematics) -> str | None:
-    J = body.oriented_volume_ratio(kinematics)[~body.linear]
-    return f"{inside_out_in_words(body, kinematics)}; allowed: above 0" if J.size and J.min() <= 0 else None
+    inside_out = body.oriented_volume_ratio(kinematics).min() <= 0
+    return f"{inside_out_in_words(body, kinematics)}; allowed: above 0" if inside_out else None
 
 
 def _contact_fault(body: Body, state: ContactEquilibrium, contact: PosedContact, name: str) -> str | None:

@@ -11,11 +11,15 @@ from solids import body_of, box, facets_where, held, on_plane
 
 from tactsim.deadline import time_limit
 from tactsim.errors import ConvergenceError, OutOfTime
+from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium import newton
+from tactsim.fem.equilibrium.balance import ExternalForces
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.fem.equilibrium.newton_step import NewtonStep
 from tactsim.fem.solvers.linear import direct_solver
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -217,3 +221,38 @@ def test_the_last_factor_spares_tangents_and_ends_at_the_same_equilibrium():
     assert spared.unknowns == pytest.approx(exact.unknowns, abs=1e-8 * np.abs(exact.unknowns).max())
     again = problem.solve(spared.unknowns, nodal_force=1.001 * force)
     assert again.iterations == 0, "the factor of the solution before is good enough for a small change"
+
+
+def test_a_linear_part_that_is_inside_out_lets_no_other_part_turn_so():
+    """J says nothing of small strains; its least value of the others bounds a step."""
+    mesh = box([1.0, 1.0], [2, 2])
+    left = mesh.nodes[mesh.elements[:, :3], 0].mean(axis=1) < 0.5
+    space = TaylorHood(mesh.nodes, mesh.elements, "plane_strain", left.astype(int))
+    body = Body(space, [MATERIALS["compressible"], MATERIALS["linear"]], left.astype(int))
+    guess, step = np.zeros(space.size), np.zeros(space.size)
+    x = mesh.nodes[:, 0]
+    space.split(guess)[0][:, 0] = np.where(x < 0.5, -2 * x, -1.0)  # turns the linear half over
+    space.split(step)[0][:, 0] = np.where(x > 0.5, -1.05 * (x - 0.5), 0.0)
+    before = body.kinematics(guess)
+    assert before.J.min() < -0.9
+    balance = Problem(body, np.zeros(0, int)).balance(ExternalForces())
+    solution = newton._Solution(balance, direct_solver(), NewtonOptions(), 1e-10)
+    damping, after = solution._damped(balance.at(guess, before, 0.0), NewtonStep(step, 0.0))
+    assert damping == 0.5
+    assert body.oriented_volume_ratio(after).min() > 0.2
+
+
+def test_a_factor_that_failed_polishes_no_later_solution(monkeypatch):
+    body, fixed, force = block(2, MATERIALS["compressible"], held_axes=range(2))
+    problem, zero = Problem(body, fixed, solver=direct_solver("superlu")), np.zeros(body.space.size)
+    solved = problem.solve(zero, nodal_force=force)
+
+    def failing(matrix):
+        problem.solver.close()
+        raise ConvergenceError("a zero pivot")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(problem.solver, "factor", failing)
+        with pytest.raises(ConvergenceError, match="a zero pivot"):
+            problem.solve(zero, nodal_force=force)
+    assert problem.solve(solved.unknowns, nodal_force=1.01 * force).history[-1] < NewtonOptions().tolerance
