@@ -56,7 +56,7 @@ def system(cells, *, bulk_modulus=None, contact=True, hold=True, giving_way=0.0)
         derivative = np.zeros((3, 3, len(penalty)))
         derivative[2, 2], derivative[0, 2] = -penalty, FRICTION * penalty
         derivative[0, 0] = giving_way * np.where(along > 0.6, penalty, 0.0)
-        data += SurfaceAssembly(points, body.pattern, 3).stiffness(derivative)
+        SurfaceAssembly(points, body.pattern, 3).add_stiffness(data, derivative)
     floor = np.concatenate([held(mesh, axis, on_plane(2, 0.0)) for axis in range(3)]) if hold else np.zeros(0, int)
     constraints = Constraints(floor, body.pattern)
     matrix = body.pattern.matrix(constraints.apply(data))
