@@ -93,7 +93,6 @@ class Body:
         materials: Sequence[Material],
         regions: Array,
         *,
-        quadrature_order: int | None = None,
         volume_stiffness: float | Array = 0.0,
     ):
         if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
@@ -103,8 +102,7 @@ class Body:
         self.materials = tuple(materials)
         self.regions = np.asarray(regions)
         self.numbers = np.arange(len(self.regions))
-        self.points = space.volume_points(quadrature_order)
-        self.quadrature_order = quadrature_order
+        self.points = space.volume_points()
         self.stabilisation = np.broadcast_to(volume_stiffness, self.regions.shape)
         self.linear = np.array([m.small_strain for m in materials])[self.regions]
         self.forms = tuple(compiled_form(material) for material in materials)

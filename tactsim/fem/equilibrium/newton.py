@@ -1,4 +1,4 @@
-"""Newton's method for the equilibrium of a body under nodal forces, follower pressures and contact."""
+"""Newton's method for the equilibrium of a body under loads and contact."""
 
 from __future__ import annotations
 
@@ -65,7 +65,6 @@ class Problem:
         *,
         interfaces: Sequence[AnyInterface] = (),
         loads: Sequence[FollowerLoad] = (),
-        nodal_force: Array | None = None,
         load_control: PrescribedForce | None = None,
         rigid_displacement: float = 0.0,
         relaxation: RelaxationStep | None = None,
@@ -76,7 +75,7 @@ class Problem:
         Parameters
         ----------
         guess : (size,) unknowns
-        interfaces, loads, nodal_force : what acts on the body; nodal forces (size,) in N
+        interfaces, loads : what acts on the body
         load_control : the force that the interfaces must exert, if it is prescribed instead of their displacement
         rigid_displacement : first guess of their displacement in m under load control
         relaxation : coefficients of the time step of materials that relax
@@ -89,7 +88,7 @@ class Problem:
         OutOfTime
             If the time allowed has passed.
         """
-        balance = self.balance(ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control), relaxation)
+        balance = self.balance(ExternalForces(tuple(interfaces), tuple(loads), load_control), relaxation)
         return self.reached(balance, guess, rigid_displacement, max(self.options.tolerance, coarse))
 
     def reached(self, balance: Balance, guess: Array, rigid_displacement: float, goal: float) -> Equilibrium:

@@ -87,7 +87,7 @@ def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) 
         fault = fault or _contact_fault(body, state, contact, f"rigid body {number}")
     if fault is None:
         recorded = tuple(_Recorded(contact) for contact in state.contacts)
-        forces = ExternalForces(recorded, tuple(action.loads), None, action.load_control)  # type: ignore[arg-type]
+        forces = ExternalForces(recorded, tuple(action.loads), action.load_control)  # type: ignore[arg-type]
         balance = problem.balance(forces, action.relaxation)
         now = balance.at(state.unknowns, kinematics, 0.0)
         fault = _unbalanced(balance, now)
