@@ -88,6 +88,7 @@ class BlockPreconditioned(IterativeSolver):
     def _factor_schur(self, schur: csr_matrix) -> None:
         """Factor it unless it is the one that was: that of incompressible tissue never changes."""
         if self._factored_schur is None or not np.array_equal(self._factored_schur, schur.data):
+            self._factored_schur = None  # one that fails serves no later system
             self._schur.factor(schur)
             self._factored_schur = schur.data
 

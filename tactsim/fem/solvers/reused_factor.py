@@ -94,6 +94,7 @@ class ReusedFactor(IterativeSolver):
         return solution
 
     def _factor_anew(self, system: LinearSystem) -> None:
+        self._spent = self._worth  # a factor that fails serves no later system
         self._direct.factor(system.nearby)
         self.factorisations += 1
         self._current, self._spent = True, 0

@@ -189,6 +189,22 @@ def test_a_coarse_factor_that_failed_serves_no_later_system(monkeypatch):
     assert len(made) == 1
 
 
+def test_a_factor_of_the_pressures_that_failed_serves_no_later_system(monkeypatch):
+    body, pressed, right = system((3, 3, 2), bulk_modulus=1e6)
+    solver = BlockPreconditioned(body)
+    solved(solver, pressed, right, FINEST_STEP)
+
+    def failing(matrix):
+        solver._schur.close()
+        raise ConvergenceError("a zero pivot")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(solver._schur, "factor", failing)
+        with pytest.raises(ConvergenceError, match="a zero pivot"):
+            solved(solver, 2 * pressed, right, FINEST_STEP)
+    solved(solver, pressed, right, FINEST_STEP)
+
+
 class Recording(BlockPreconditioned):
     """Notes how accurate its solutions are to be."""
 
