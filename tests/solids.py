@@ -9,6 +9,7 @@ from skfem import MeshTet, MeshTri
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.dead_load import DeadLoad
 from tactsim.fem.assembly.space import Measure, TaylorHood
 from tactsim.fem.equilibrium.balance import Equilibrium
 from tactsim.fem.equilibrium.newton import Problem
@@ -67,7 +68,7 @@ def solve_near(
     guess = np.zeros(body.space.size)
     guess[: displacement.size] = displacement.ravel() + disturbance
     problem = Problem(body, fixed, options=NewtonOptions(polished=0.0))  # a last step that leaves round-off
-    solved = problem.solve(guess, nodal_force=nodal_force)
+    solved = problem.solve(guess, loads=[] if nodal_force is None else [DeadLoad(nodal_force)])
     problem.solver.close()
     return solved
 

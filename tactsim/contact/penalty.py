@@ -95,7 +95,7 @@ class Regularisation:
         """The same for a step in which multipliers overshoot; nothing else without them."""
         return self
 
-    def after_step_from(self, before: Regularisation) -> Self:
+    def after_step_from(self, before: Self) -> Self:
         """What the next step begins with after one ``before`` which it was this one."""
         return self
 
@@ -145,10 +145,8 @@ class Augmentation(Regularisation):
         softness = min(self.softness, FLOWING_SOFTNESS * self.tolerance)
         return replace(self, softest=stiffness * self.softest, softness=softness)
 
-    def after_step_from(self, before: Regularisation) -> Self:
+    def after_step_from(self, before: Self) -> Self:
         """The same with the softness and the pressure scale from ``before``."""
-        if not isinstance(before, Augmentation):
-            return self
         return replace(self, softest=before.softest, softness=before.softness)
 
     def excess_in_words(self, penetration: float, elastic_slip: float) -> str:

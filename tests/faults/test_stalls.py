@@ -57,7 +57,7 @@ def follow(advance: Marsh, **control: float) -> list[Point]:
 
 
 def march(advance: Marsh, first: float = 0.1, largest: float = 0.4) -> list[Point]:
-    marcher = TimeMarcher(advance, lambda state: 0.0, TimeControl(1.0, first=first, smallest=1e-8))
+    marcher = TimeMarcher(advance, lambda now, state: 0.0, TimeControl(1.0, first=first, smallest=1e-8))
     return [state for state, _ in marcher.march(START, [0.5, 1.0], largest=largest)]
 
 

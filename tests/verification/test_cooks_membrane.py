@@ -11,6 +11,7 @@ import pytest
 from skfem import MeshTri
 from solids import body_of, facets_where, held, on_plane
 
+from tactsim.fem.assembly.dead_load import DeadLoad
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.interfaces import Material
@@ -77,7 +78,7 @@ def tip_displacements(mesh: QuadraticMesh, material: Material = RUBBER) -> tuple
     problem = Problem(body, np.concatenate([held(mesh, axis, on_plane(0, 0.0)) for axis in (0, 1)]))
     unknowns = np.zeros(body.space.size)
     for share in (0.25, 0.5, 0.75, 1.0):
-        unknowns = problem.solve(unknowns, nodal_force=share * force).unknowns
+        unknowns = problem.solve(unknowns, loads=[DeadLoad(share * force)]).unknowns
     u, _ = body.space.split(unknowns)
     tip, middle = (int(np.argmin(np.linalg.norm(mesh.nodes - place, axis=1))) for place in (TIP, TIP - [0.0, 8.0]))
     return u[tip, 0], u[tip, 1], u[middle, 1]

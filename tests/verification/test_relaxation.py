@@ -178,7 +178,7 @@ def march(tolerance):
         states[time] = (block.unknowns, block.variables, stress)
         return State(time)
 
-    def error(state):
+    def error(now, state):
         return step_error(block.body, states[state.time][1])
 
     marcher = TimeMarcher(advance, error, TimeControl(tolerance, first=1e-3, smallest=1e-9))

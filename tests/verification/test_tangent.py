@@ -115,7 +115,8 @@ def traction_map(body: Body, assembly: SurfaceAssembly, *, wrong_sign: bool = Fa
 
     def slope(unknowns, direction):
         derivative = np.einsum("ij,jn->ijn", mixing, np.cos(place(unknowns)))
-        return body.pattern.matrix(assembly.stiffness(-derivative if wrong_sign else derivative)) @ direction
+        data = assembly.add_stiffness(np.zeros(len(body.pattern.indices)), -derivative if wrong_sign else derivative)
+        return body.pattern.matrix(data) @ direction
 
     return Map(lambda unknowns: -assembly.force(mixing @ np.sin(place(unknowns))), slope)
 

@@ -137,7 +137,7 @@ class ClampCondition(FaceCondition):
 
 
 class PointCondition(Condition, Displacement):
-    """Prescribed components of the displacement of the corner of the mesh at a point."""
+    """Prescribed components of the displacement of the node of the mesh at a point."""
 
     kind: Literal["point"]
     at: tuple[Length, ...]

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.boundary_value.asked import unit_of
+from tactsim.experiments.boundary_value.asked import Asked, unit_of
 from tactsim.experiments.boundary_value.branching import unstable_in_words
 from tactsim.experiments.boundary_value.conditions import SIDES
 from tactsim.experiments.boundary_value.limit_load import LimitLoad
@@ -168,10 +168,17 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
 
     def verdict(self) -> tuple[Status, str]:
         """A path that came to its end has converged, unless a number that is asked for is none."""
-        last = self.steps[-1].values if self.steps else {}
-        if lost := [name for name in self.problem.asked if not math.isfinite(last.get(name, 0.0))]:
-            return Status.FAILED, f"{lost[0]} is {last[lost[0]]}, not a finite number"
+        for name, one in self.problem.asked.items():
+            step = self._step_of(one)
+            if step is not None and not math.isfinite(step.values[name]):
+                return Status.FAILED, f"{name} is {step.values[name]}, not a finite number"
         return Status.CONVERGED, "end of the amplitudes"
+
+    @property
+    def _reported(self) -> list[StepRecord]:
+        """The steps at which a number is asked for, and the last one."""
+        steps = {step.step: step for one in self.problem.asked.values() if (step := self._step_of(one)) is not None}
+        return [*(steps[number] for number in sorted(steps)), *super()._reported]
 
     def quantities(self) -> dict[str, Quantity]:
         """What is asked for, each at its time, and the quality of the answer."""
@@ -185,15 +192,16 @@ class BoundaryValueRecord(ContactRecord[LoadedBody]):
         unit = unit_of(one, self.problem.dimension)
         if unit != one.unit:
             words += ", per metre of depth"
-        if one.time is None:
-            return Quantity(self.steps[-1].values[name], unit, words + LAST)
-        step = self._step_at(one.time)
-        when = format_quantity(one.time, "s")
-        return None if step is None else Quantity(step.values[name], unit, f"{words}, at {when}")
+        when = LAST if one.time is None else f", at {format_quantity(one.time, 's')}"
+        step = self._step_of(one)
+        return None if step is None else Quantity(step.values[name], unit, words + when)
 
-    def _step_at(self, time: float) -> StepRecord | None:
-        """The last step at a time in s."""
-        return next((step for step in reversed(self.steps) if abs(step.values["time"] - time) <= SAME_TIME * time), None)
+    def _step_of(self, one: Asked) -> StepRecord | None:
+        """The last step at the time at which a number is asked for; None if the run did not come so far."""
+        steps = reversed(self.steps)
+        return next(
+            (step for step in steps if one.time is None or abs(step.values["time"] - one.time) <= SAME_TIME * one.time), None
+        )
 
     def assumptions(self) -> list[str]:
         """Which part of the body is computed, and what contact and time allow."""

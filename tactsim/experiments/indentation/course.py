@@ -94,16 +94,20 @@ def started(setup: IndentationSetup, model: PressedModel, modulus: float) -> Con
 
 
 class DisplacementPath:
-    """Follows the displacement, and from time to time goes on with a finer mesh of the same tissue.
-
-    ``rejected`` counts the steps that were taken back, ``model`` is that of the last state.
-    """
+    """Follows the displacement, and from time to time goes on with a finer mesh of the same tissue; ``model`` is that of the last
+    state."""
 
     def __init__(self, setup: IndentationSetup, drive: Displaced, model: PressedModel):
-        self.model, self.rejected, self._setup, self._drive = model, 0, setup, drive
+        self.model, self._setup, self._drive = model, setup, drive
+        self._followers: list[PathFollower[ContactEquilibrium]] = []
         self._size = setup.section().size()
         self._most = LARGEST_GROWTH * len(model.mesh.elements)
         self.start = started(setup, model, min(material.shear_modulus for material in setup.specimen.materials))
+
+    @property
+    def rejected(self) -> int:
+        """Steps that were taken back, those of a path that gave up included."""
+        return sum(follower.rejected for follower in self._followers)
 
     def states(self, adapted: Adapted) -> Iterator[tuple[TimedState, bool]]:
         """Accepted states, each with whether it is the touch of the inner sensor; past it, this presses too.
@@ -155,10 +159,9 @@ class DisplacementPath:
         while more:
             more, before = False, state.load
             follower = PathFollower(self.model.equilibrium, replace(control, first=first))
+            self._followers.append(follower)
             for reached, happened in follower.follow(state, target, event, headway=headway):
                 first, before = max(control.first, RESTART * (reached.load - before)), reached.load
-                self.rejected += follower.rejected
-                follower.rejected = 0
                 state = reached
                 yield TimedState(state.load, (state.load,), state, None), happened
                 if not happened and state.load < target and (model := self._to_refine(state)) is not None:

@@ -7,10 +7,10 @@ from typing import Literal, Self
 
 from pydantic import model_validator
 
-from tactsim.experiments.indentation.setup import Displaced, IndentationSetup
+from tactsim.experiments.indentation.pressing import PressingSetup
+from tactsim.experiments.indentation.setup import Displaced
 from tactsim.fem.paths.loading import StepControl
 from tactsim.fem.paths.progress import check_steps
-from tactsim.interfaces.run import Course, Findings
 from tactsim.model import FrozenModel
 from tactsim.progress import Extent
 from tactsim.units import Length, Positive, format_quantity
@@ -40,7 +40,7 @@ class StepSettings(FrozenModel):
     """The run fails when a step would have to be shorter; by default a ten-thousandth of the first step."""
 
 
-class DisplacedSetup(IndentationSetup):
+class DisplacedSetup(PressingSetup):
     """A rigid body pressed into a specimen by a displacement, without regard to time."""
 
     stop: Literal["threshold", "displacement"] = "threshold"
@@ -94,18 +94,6 @@ class DisplacedSetup(IndentationSetup):
             given, least = format_quantity(first, "m"), format_quantity(LEAST_STEP * displacement, "m")
             raise ValueError(f"steps.first: {given} is lost in round-off; allowed: at least {least}, a billionth of the way")
         check_steps(displacement / largest, f"steps.largest {format_quantity(largest, 'm')}")
-
-    def begin(self) -> Course:
-        """Press until the threshold or the displacement; see ``IndentationRecord`` for what is reported."""
-        from tactsim.experiments.indentation.course import indentation_course
-
-        return indentation_course(self)
-
-    def unloaded(self) -> Findings:
-        """The tissue and the body at first touch."""
-        from tactsim.experiments.indentation.course import unloaded_indentation
-
-        return unloaded_indentation(self)
 
     def drive(self) -> Displaced:
         """Load steps to the displacement."""

@@ -8,9 +8,9 @@ from pydantic import model_validator
 
 from tactsim.contact.coulomb import Coulomb
 from tactsim.experiments.indentation.history import history_units
-from tactsim.experiments.indentation.setup import IndentationSetup, Timed
+from tactsim.experiments.indentation.pressing import PressingSetup
+from tactsim.experiments.indentation.setup import Timed
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.library import named_material
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mechanics.paths.loading import AnyLoading, DisplacementLoading
@@ -22,7 +22,7 @@ LOAD_STEPS = 20
 """Least number of steps of a ramp, and per period of a sine."""
 
 
-class TimedIndentation(IndentationSetup, Experiment):
+class TimedIndentation(PressingSetup, Experiment):
     """A rigid body pressed into a cylindrical specimen by a prescribed history.
 
     >>> import tactsim as ts
@@ -54,18 +54,6 @@ class TimedIndentation(IndentationSetup, Experiment):
         )
         specimen = Specimen(material=named_material("atrial").material, thickness=10e-3, radius=15e-3)
         return cls(specimen=specimen, contact=Coulomb(friction=0.0), loading=held)
-
-    def begin(self) -> Course:
-        """Follow the history to its end or to the touch; see ``IndentationRecord`` for what is reported."""
-        from tactsim.experiments.indentation.course import indentation_course
-
-        return indentation_course(self)
-
-    def unloaded(self) -> Findings:
-        """The tissue and the body at first touch."""
-        from tactsim.experiments.indentation.course import unloaded_indentation
-
-        return unloaded_indentation(self)
 
     @property
     def extent(self) -> Extent:

@@ -93,7 +93,6 @@ class Body:
         materials: Sequence[Material],
         regions: Array,
         *,
-        quadrature_order: int | None = None,
         volume_stiffness: float | Array = 0.0,
     ):
         if len(regions) != len(space.elements) or regions.min() < 0 or regions.max() >= len(materials):
@@ -103,8 +102,7 @@ class Body:
         self.materials = tuple(materials)
         self.regions = np.asarray(regions)
         self.numbers = np.arange(len(self.regions))
-        self.points = space.volume_points(quadrature_order)
-        self.quadrature_order = quadrature_order
+        self.points = space.volume_points()
         self.stabilisation = np.broadcast_to(volume_stiffness, self.regions.shape)
         self.linear = np.array([m.small_strain for m in materials])[self.regions]
         self.forms = tuple(compiled_form(material) for material in materials)
@@ -130,14 +128,13 @@ class Body:
         return Kinematics(F.reshape(3, 3, *shape), *invariants)
 
     def oriented_volume_ratio(self, state: Kinematics) -> Array:
-        """J at the points (E, Q), negative wherever matter lies inside out.
+        """J at the points (E, Q), negative wherever matter lies inside out; infinite where a material is of small strains.
 
-        That is also where a section has passed the axis of revolution: hoop stretch and ratio of areas are negative there, their
-        product J is not.
+        A section that has passed the axis of revolution is inside out, too: hoop stretch and ratio of areas are negative there,
+        their product J is not.
         """
-        if self.space.measure != "axisymmetric":
-            return state.J
-        return np.where(state.F[2, 2] > 0, state.J, -np.abs(state.J))
+        J = state.J if self.space.measure != "axisymmetric" else np.where(state.F[2, 2] > 0, state.J, -np.abs(state.J))
+        return np.where(self.linear[:, None], np.inf, J) if self.linear.any() else J
 
     def pressure(self, unknowns: Array) -> Array:
         """Pressure unknown (tension positive) at the quadrature points in Pa, shape (E, Q)."""

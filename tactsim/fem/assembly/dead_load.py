@@ -27,24 +27,17 @@ class DeadLoad:
     def __init__(self, forces: Array):
         self._forces = forces
 
-    def at(self, factor: float) -> FactoredLoad:
+    def at(self, factor: float) -> DeadLoad:
         """The same load times a factor."""
-        return FactoredLoad(factor * self._forces)
-
-
-class FactoredLoad:
-    """Nodal forces (size,) in N that no displacement changes."""
-
-    def __init__(self, force: Array):
-        self._force = force
+        return DeadLoad(factor * self._forces)
 
     def force(self, displacement: Array) -> Array:
         """External nodal forces (size,) in N at any displacements."""
-        return self._force
+        return self._forces
 
     def add_stiffness(self, data: Array, displacement: Array) -> None:
         """Add nothing to ``data`` (nnz,), as the force does not change with displacements (n, d)."""
 
-    def of_part(self, part: BodyPart) -> FactoredLoad:
+    def of_part(self, part: BodyPart) -> DeadLoad:
         """The share of the forces that a part of the body bears."""
-        return FactoredLoad(part.share(self._force))
+        return DeadLoad(part.share(self._forces))

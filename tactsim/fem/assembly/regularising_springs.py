@@ -47,10 +47,6 @@ class AnchoredSprings:
         """Add the stiffness of the springs to the diagonal of the tangent, entries (nnz,)."""
         data[self._body.pattern.diagonal] += self._stiffness
 
-    def total(self, displacement: Array) -> Array:
-        """Resultant (d,) in N of the springs on the body."""
-        return self.force(displacement)[: displacement.size].reshape(displacement.shape).sum(axis=0)
-
 
 class RegularisingSprings(AnchoredSprings):
     """Springs to the undeformed places; their relative error is of the order of ``WEAKNESS``."""

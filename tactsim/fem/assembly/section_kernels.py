@@ -3,6 +3,9 @@
 Only five entries of F are not zero (``section_point``), and an element is summed up before it is added to the body, its tangent
 as products of tables over all its points. That takes a third of the time of the loops over 3 x 3 tensors that serve solids
 (``kernels``): of `annulus_icf` with its 10 194 points, 4.9 ms for a tangent, where those took 14.4 ms.
+
+No sum is reordered or contracted, so that the first run on a machine gives the digits of all others, as in ``kernels``. With both
+allowed, a tangent takes a quarter less, and of whole runs nothing is to be seen of that.
 """
 
 from __future__ import annotations
@@ -26,13 +29,13 @@ BLOCK = 64
 """Elements per task of a thread."""
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def _pressure(p, corners, shape_p):  # type: ignore[no-untyped-def]
     """Pressure at one point."""
     return shape_p[0] * p[corners[0]] + shape_p[1] * p[corners[1]] + shape_p[2] * p[corners[2]]
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def _keep_point(A, slope, gradients, hoop, weights, q, rows, columns):  # type: ignore[no-untyped-def]
     """Write what point q adds to the tangent, to be summed over the points at once.
 
@@ -60,7 +63,7 @@ def _keep_point(A, slope, gradients, hoop, weights, q, rows, columns):  # type: 
         along[n, 2 * q + 1] = A[3, 2] * x + A[3, 3] * z
 
 
-@numba.njit(cache=True, fastmath={"contract", "reassoc", "nsz"})
+@numba.njit(cache=True)
 def _dot(first, second):  # type: ignore[no-untyped-def]
     """Sum of products of two vectors."""
     total = 0.0
@@ -69,7 +72,7 @@ def _dot(first, second):  # type: ignore[no-untyped-def]
     return total
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def _scatter(rows, columns, D, shape_p, nodes, pressure_rows, indptr, place, data):  # type: ignore[no-untyped-def]
     """Sum one element's points, ``rows`` and ``columns`` of ``_keep_point`` and D (3, 3), and add it to the matrix entries."""
     radial, axial = rows
@@ -99,7 +102,7 @@ def _scatter(rows, columns, D, shape_p, nodes, pressure_rows, indptr, place, dat
             data[indptr[pressure_rows[v]] + place[6 + v, 6 + x]] += D[v, x]
 
 
-@numba.njit(cache=True, parallel=True, fastmath={"contract"})
+@numba.njit(cache=True, parallel=True)
 def deformation(u, elements, gradients, hoop, F_out, invariants):  # type: ignore[no-untyped-def]
     """F at every point into F_out (9, E, Q), which holds zeros; J, I1bar, I2bar into the last (3, E, Q)."""
     count, points = gradients.shape[:2]
@@ -114,7 +117,7 @@ def deformation(u, elements, gradients, hoop, F_out, invariants):  # type: ignor
                 F_out[0, e, q], F_out[1, e, q], F_out[3, e, q], F_out[4, e, q], F_out[8, e, q] = F
 
 
-@numba.njit(cache=True, parallel=True, fastmath={"contract"})
+@numba.njit(cache=True, parallel=True)
 def residual(u, p, tables, W, history_stress, order, starts, out):  # type: ignore[no-untyped-def]
     """Internal forces, then volume constraints, added to ``out``; ``history_stress`` (6, E, Q), or (6, 0, 0) for none."""
     elements, pressures, gradients, hoop, weights, shape_p, linear, compliance, stiffness = tables
@@ -150,7 +153,7 @@ def residual(u, p, tables, W, history_stress, order, starts, out):  # type: igno
                     out[u.size + pressures[e, v]] += volumes[v]
 
 
-@numba.njit(cache=True, parallel=True, fastmath={"contract", "reassoc", "nsz"})
+@numba.njit(cache=True, parallel=True)
 def tangent(u, p, tables, W, history_stress, order, starts, indptr, offsets, data):  # type: ignore[no-untyped-def]
     """Entries of the tangent, added to ``data``."""
     elements, pressures, gradients, hoop, weights, shape_p, linear, compliance, stiffness = tables
@@ -185,7 +188,7 @@ def tangent(u, p, tables, W, history_stress, order, starts, indptr, offsets, dat
                 _scatter(rows, columns, D, shape_v, nodes, u.size + pressures[e], indptr, offsets[e], data)
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def elastic_stress(F, W, tension, linear, out):  # type: ignore[no-untyped-def]
     """Second Piola-Kirchhoff stress at F (3, 3, E, Q), slopes W and tension (E, Q) into ``out`` (6, E, Q), which holds zeros."""
     P, slope, S = np.empty(5), np.empty(5), np.empty(4)

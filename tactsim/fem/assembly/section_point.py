@@ -8,7 +8,7 @@ from __future__ import annotations
 import numba
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def deformation_gradient(u, nodes, gradients, hoop):  # type: ignore[no-untyped-def]
     """F11, F12, F21, F22 and F33 at one point."""
     a, b, c, d, t = 1.0, 0.0, 0.0, 1.0, 1.0
@@ -22,7 +22,7 @@ def deformation_gradient(u, nodes, gradients, hoop):  # type: ignore[no-untyped-
     return a, b, c, d, t
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def deformation_invariants(F):  # type: ignore[no-untyped-def]
     """The area ratio, its slope by the four entries in the plane, the sum of their squares, J, I1, I2 and J^(-2/3)."""
     a, b, c, d, t = F
@@ -31,7 +31,7 @@ def deformation_invariants(F):  # type: ignore[no-untyped-def]
     return area, (d, -c, -b, a), square, J, square + t * t, area * area + square * t * t, abs(J) ** (-2.0 / 3.0)
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def isochoric_gradients(F, invariants):  # type: ignore[no-untyped-def]
     """dI1bar/dF and dI2bar/dF (5,), F^-T (5,), and half of dI2/dF (5,)."""
     a, b, c, d, t = F
@@ -56,7 +56,7 @@ def isochoric_gradients(F, invariants):  # type: ignore[no-untyped-def]
     return G1, G2, inverse, H
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def isochoric_stress(F, W1, W2, linear, P, volume_slope):  # type: ignore[no-untyped-def]
     """Isochoric P into ``P`` (5,), the slope of the volume change into ``volume_slope`` (5,); returns the volume change."""
     a, b, c, d, t = F
@@ -77,7 +77,7 @@ def isochoric_stress(F, W1, W2, linear, P, volume_slope):  # type: ignore[no-unt
     return invariants[3] - 1.0
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def add_history_stress(F, S, linear, P):  # type: ignore[no-untyped-def]
     """Add the stress of the history, a second Piola-Kirchhoff stress S (11, 22, 33, 12, ...), to P (5,)."""
     if linear:
@@ -91,7 +91,7 @@ def add_history_stress(F, S, linear, P):  # type: ignore[no-untyped-def]
     P[4] += t * S[2]
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def linear_moduli(shear_modulus, stiffness, volume_slope, A):  # type: ignore[no-untyped-def]
     """What ``moduli`` gives where the material is linear."""
     volume_slope[0], volume_slope[1], volume_slope[2], volume_slope[3], volume_slope[4] = 1.0, 0.0, 0.0, 1.0, 1.0
@@ -103,7 +103,7 @@ def linear_moduli(shear_modulus, stiffness, volume_slope, A):  # type: ignore[no
     A[2, 1] += shear_modulus
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def moduli(F, W, linear, volume, volume_slope, A):  # type: ignore[no-untyped-def]
     """dP/dF at fixed pressure into A (5, 5), slope of the volume change into ``volume_slope`` (5,); W are the five slopes of the
     energy and ``volume`` the pressure, the compliance and the stiffness against a change of volume that it does not ask for."""
@@ -145,7 +145,7 @@ def moduli(F, W, linear, volume, volume_slope, A):  # type: ignore[no-untyped-de
             A[m, n] = A[n, m]
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def add_history_moduli(S, A):  # type: ignore[no-untyped-def]
     """Add the derivative of the stress of the history to A (5, 5)."""
     for row in (0, 2):
@@ -156,7 +156,7 @@ def add_history_moduli(S, A):  # type: ignore[no-untyped-def]
     A[4, 4] += S[2]
 
 
-@numba.njit(cache=True, fastmath={"contract"})
+@numba.njit(cache=True)
 def pulled_back(F, P, linear, S):  # type: ignore[no-untyped-def]
     """F^-1 P, or P where the material is linear, of P (5,), into S (11, 22, 33, 12)."""
     if linear:

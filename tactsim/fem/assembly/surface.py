@@ -31,12 +31,11 @@ class SurfaceAssembly:
         bound = np.einsum("n,na,n->na", self.points.weights, np.abs(self.points.values), traction)
         return np.bincount(self.unknowns.ravel(), np.repeat(bound, self._dim, axis=1).ravel(), self.size)
 
-    def stiffness(self, derivative: Array) -> Array:
-        """Tangent entries (nnz,), minus the derivative of the external force, for d(traction)/dx of shape (d, d, n) in Pa/m."""
-        return self.add_stiffness(np.zeros(len(self._pattern.indices)), derivative)
-
     def add_stiffness(self, data: Array, derivative: Array) -> Array:
-        """The tangent entries ``data`` (nnz,) of the whole body with those of ``stiffness`` added to them, in place."""
+        """The tangent entries ``data`` (nnz,) of the whole body, from which the derivative of the force is taken in place.
+
+        ``derivative`` (d, d, n) in Pa/m is that of the traction with respect to the points.
+        """
         weighted = (-self.points.weights * derivative).reshape(-1, self.points.per_facet)
         places, positions = self._places
         data[places] += np.bincount(positions, (weighted @ self._products).ravel(), len(places))

@@ -17,20 +17,18 @@ from tactsim.fem.equilibrium.prescribed_force import PrescribedForce
 
 @dataclass(frozen=True)
 class ExternalForces:
-    """What acts on a body: interfaces, follower loads, nodal forces (size,) in N, and under load control the force that the
-    interfaces together must exert."""
+    """What acts on a body: interfaces, loads, and under load control the force that the interfaces together must exert."""
 
     interfaces: tuple[AnyInterface, ...] = ()
     loads: tuple[FollowerLoad, ...] = ()
-    nodal_force: Array | None = None
     load_control: PrescribedForce | None = None
 
     def nodal(self, displacement: Array, size: int) -> Array:
-        """Forces (size,) in N of loads and nodal forces at nodal displacements (n, d)."""
+        """Forces (size,) in N of the loads at nodal displacements (n, d)."""
         total = np.zeros(size)
         for load in self.loads:
             total += load.force(displacement)
-        return total if self.nodal_force is None else total + self.nodal_force
+        return total
 
 
 @dataclass(frozen=True)

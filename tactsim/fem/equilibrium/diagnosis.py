@@ -27,7 +27,7 @@ def inside_out_in_words(body: Body, kinematics: Kinematics) -> str:
     undefined = np.flatnonzero(~np.isfinite(kinematics.J).all(axis=1))
     if len(undefined):
         return f"{element_in_words(body, int(undefined[0]))}, whose deformation is no finite number"
-    least = np.where(body.linear, np.inf, body.oriented_volume_ratio(kinematics).min(axis=1))
+    least = body.oriented_volume_ratio(kinematics).min(axis=1)
     element = int(least.argmin())
     if least[element] < kinematics.J[element].min():
         return f"{element_in_words(body, element)}, which passes the axis of revolution"

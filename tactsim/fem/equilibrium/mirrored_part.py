@@ -99,7 +99,6 @@ class MirroredPart:
         return ExternalForces(
             tuple(forces.interfaces[number].of_part(surface.assembly, surface.points) for number, surface in touched.items()),
             tuple(load.of_part(self.own) for load in forces.loads),
-            None if forces.nodal_force is None else self.own.share(forces.nodal_force),
             control,
         )
 
@@ -201,8 +200,7 @@ def _part(body: Body, axes: tuple[int, ...]) -> MirroredPart | None:
 
 def _restricted(body: Body, space: TaylorHood, elements: Array) -> Body:
     """The body of some ``elements`` (E',) in a space of their own; messages number them as before."""
-    order, stabilisation = body.quadrature_order, body.stabilisation[elements]
-    part = Body(space, body.materials, body.regions[elements], quadrature_order=order, volume_stiffness=stabilisation)
+    part = Body(space, body.materials, body.regions[elements], volume_stiffness=body.stabilisation[elements])
     part.numbers = body.numbers[elements]
     return part
 

@@ -1,4 +1,4 @@
-"""Newton's method for the equilibrium of a body under nodal forces, follower pressures and contact."""
+"""Newton's method for the equilibrium of a body under loads and contact."""
 
 from __future__ import annotations
 
@@ -65,7 +65,6 @@ class Problem:
         *,
         interfaces: Sequence[AnyInterface] = (),
         loads: Sequence[FollowerLoad] = (),
-        nodal_force: Array | None = None,
         load_control: PrescribedForce | None = None,
         rigid_displacement: float = 0.0,
         relaxation: RelaxationStep | None = None,
@@ -76,7 +75,7 @@ class Problem:
         Parameters
         ----------
         guess : (size,) unknowns
-        interfaces, loads, nodal_force : what acts on the body; nodal forces (size,) in N
+        interfaces, loads : what acts on the body
         load_control : the force that the interfaces must exert, if it is prescribed instead of their displacement
         rigid_displacement : first guess of their displacement in m under load control
         relaxation : coefficients of the time step of materials that relax
@@ -89,7 +88,7 @@ class Problem:
         OutOfTime
             If the time allowed has passed.
         """
-        balance = self.balance(ExternalForces(tuple(interfaces), tuple(loads), nodal_force, load_control), relaxation)
+        balance = self.balance(ExternalForces(tuple(interfaces), tuple(loads), load_control), relaxation)
         return self.reached(balance, guess, rigid_displacement, max(self.options.tolerance, coarse))
 
     def reached(self, balance: Balance, guess: Array, rigid_displacement: float, goal: float) -> Equilibrium:
@@ -245,6 +244,7 @@ class _Solution:
         for load in self._forces.loads:
             load.add_stiffness(data, u)
         system = contact_system(body.pattern, constraints, data, interfaces, now)
+        self.factored = None  # by a solver that fails, the last factor is lost
         step = solved(solver, system, -constraints.free(self._residual(state, now)), accuracy)
         border = None if control is None else control.border([interface.surface for interface in interfaces], now)
         along = None if border is None else resolved(solver, system.matrix, constraints.free(border.column), accuracy)
@@ -267,7 +267,8 @@ class _Solution:
 
     def _damped(self, before: NewtonState, step: NewtonStep) -> tuple[float, Kinematics]:
         """Largest step length, halving from one, that keeps every element right side out."""
-        floor, damping = self._options.volume_floor * min(1.0, float(before.kinematics.J.min())), 1.0
+        least, damping = float(self._body.oriented_volume_ratio(before.kinematics).min()), 1.0
+        floor = self._options.volume_floor * min(1.0, least)
         while damping >= self._options.smallest_damping:
             after = self._admissible(before.unknowns + damping * step.unknowns, floor)
             if after is not None:
@@ -279,10 +280,8 @@ class _Solution:
 
     def _admissible(self, unknowns: Array, floor: float) -> Kinematics | None:
         after = self._body.kinematics(unknowns)
-        J = self._body.oriented_volume_ratio(after)
-        kept = J if not self._body.linear.any() else J[~self._body.linear]
-        ok = np.isfinite(J).all() and (not kept.size or kept.min() > floor)  # no J is finite where an entry of F is not
-        return after if ok else None
+        finite = np.isfinite(after.J).all()  # no J is where an entry of F is not
+        return after if finite and self._body.oriented_volume_ratio(after).min() > floor else None
 
 
 def _gone_astray(before: NewtonState, after: NewtonState) -> bool:

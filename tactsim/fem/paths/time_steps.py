@@ -64,11 +64,13 @@ class TimeMarcher(Generic[State]):
     Parameters
     ----------
     advance : (state, time, guess) -> the state at ``time``; raises ConvergenceError
-    error : (state) -> relative error of the step that led to it
+    error : (state, next one) -> relative error of the step from one to the other
     control : step lengths
     """
 
-    def __init__(self, advance: Callable[[State, float, Array], State], error: Callable[[State], float], control: TimeControl):
+    def __init__(
+        self, advance: Callable[[State, float, Array], State], error: Callable[[State, State], float], control: TimeControl
+    ):
         self._advance, self._error, self._control = advance, error, control
         self.rejected = 0
 
@@ -92,7 +94,7 @@ class TimeMarcher(Generic[State]):
                 step = _landing(stop - now.time, min(wanted, largest))
                 try:
                     reached = self._advance(now, now.time + step, beyond(path, step))
-                    error = self._error(reached)
+                    error = self._error(now, reached)
                     if not self._control.accepts(error):
                         raise _TooLong(f"the error {error:.1e} of a step of {step:.3g} s is above {self._control.tolerance:g}")
                     happened = event is not None and event.value(reached) >= 0

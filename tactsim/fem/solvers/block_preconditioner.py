@@ -18,9 +18,10 @@ from scipy.sparse import bsr_matrix, csr_matrix
 from scipy.sparse.linalg import LinearOperator, gcrotmk
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, InputError
+from tactsim.errors import ConvergenceError
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.solvers.linear import CAUSES, LARGEST_RESIDUAL, LOOSENESS, IterativeSolver, LinearSystem, guiding_solver
+from tactsim.fem.solvers.pardiso import of_last_matrix
 from tactsim.fem.solvers.tangent_blocks import TangentBlocks
 from tactsim.fem.solvers.two_level import TwoLevel
 
@@ -87,6 +88,7 @@ class BlockPreconditioned(IterativeSolver):
     def _factor_schur(self, schur: csr_matrix) -> None:
         """Factor it unless it is the one that was: that of incompressible tissue never changes."""
         if self._factored_schur is None or not np.array_equal(self._factored_schur, schur.data):
+            self._factored_schur = None  # one that fails serves no later system
             self._schur.factor(schur)
             self._factored_schur = schur.data
 
@@ -97,11 +99,8 @@ class BlockPreconditioned(IterativeSolver):
         ------
         ConvergenceError
             If the iteration does not reach it, as with a singular matrix.
-        InputError
-            If no matrix was factored.
         """
-        if self._matrix is None:
-            raise InputError("factor a matrix before solving")
+        matrix = of_last_matrix(self._matrix)
         solution, left, self.iterations = np.zeros_like(right), right, 0
         size = float(np.linalg.norm(self._scale * right))
         goal = max(accuracy, FINEST) * size
@@ -116,7 +115,7 @@ class BlockPreconditioned(IterativeSolver):
             most = RESTART if self._displacements.is_current else MOST_WITH_OLD
             y, _ = gcrotmk(operator, self._scale * left, rtol=0.0, atol=target, M=guide, m=most, k=1, maxiter=1)
             solution = solution + self._scale * y
-            left = right - self._matrix @ solution
+            left = right - matrix @ solution
             if self._above(left, goal, largest):
                 self._displacements.renew()
         if self._above(left, goal, largest):

@@ -17,9 +17,9 @@ from scipy.linalg import lu_factor, lu_solve
 from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, InputError
+from tactsim.errors import ConvergenceError
 from tactsim.fem.solvers.linear import FirstSolution, IterativeSolver, LinearSystem
-from tactsim.fem.solvers.pardiso import SymmetricPardiso, UpperHalf
+from tactsim.fem.solvers.pardiso import SymmetricPardiso, UpperHalf, of_last_matrix
 from tactsim.fem.solvers.pardiso_binding import (
     ANALYSE_AND_FACTOR,
     BACKWARD,
@@ -117,18 +117,11 @@ class CondensedPardiso(SymmetricPardiso):
         self._dense = lu_factor(complement, overwrite_a=True, check_finite=False)
 
     def solve(self, right: Array) -> Array:
-        """Solution for one right-hand side (n,).
-
-        Raises
-        ------
-        InputError
-            If no matrix was factored.
-        """
-        if self._system is None:
-            raise InputError("factor a matrix before solving")
-        reduced = call_pardiso(self._solver, FORWARD, self._system, self._scaled.scale * right)
+        """Solution for one right-hand side (n,)."""
+        system = of_last_matrix(self._system)
+        reduced = call_pardiso(self._solver, FORWARD, system, self._scaled.scale * right)
         reduced[self._left_out] = lu_solve(self._dense, reduced[self._left_out], check_finite=False)
-        return self._scaled.scale * call_pardiso(self._solver, BACKWARD, self._system, reduced)
+        return self._scaled.scale * call_pardiso(self._solver, BACKWARD, system, reduced)
 
     def _structure(self, matrix: csr_matrix) -> tuple[Array, Array]:
         return self._scaled.half.structure(matrix.shape[0])
@@ -170,13 +163,10 @@ class CondensedFactors(IterativeSolver):
 
         Raises
         ------
-        InputError
-            If there is no matrix yet.
         ConvergenceError
             If friction acts on no unknown or on too many, or the factor is not exact.
         """
-        if self._scaled is None:
-            raise InputError("factor a matrix before solving")
+        of_last_matrix(self._scaled)
         if self._direct is None:
             raise ConvergenceError("friction acts on no unknown, or on too many")
         return self._first.checked(self._direct.solve(right), right)

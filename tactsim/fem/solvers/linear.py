@@ -14,7 +14,7 @@ from scipy.sparse import csr_matrix
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InputError
-from tactsim.fem.solvers.pardiso import Pardiso, SinglePardiso, SymmetricPardiso
+from tactsim.fem.solvers.pardiso import Pardiso, SinglePardiso, SymmetricPardiso, of_last_matrix
 
 LARGEST_RESIDUAL = 1e-3
 """Largest residual over the right-hand side: solvable systems leave about 1e-13, stiff contact included, singular ones 1."""
@@ -68,7 +68,7 @@ class DirectSolver(Protocol):
         """Factor a matrix; its pattern must be that of the first one."""
 
     def solve(self, right: Array) -> Array:
-        """Solution for one right-hand side (n,) of the last matrix."""
+        """Solution for one right-hand side (n,) of the last matrix; raises InputError if there is none."""
 
     def close(self) -> None:
         """Release the factor's memory."""
@@ -89,7 +89,13 @@ class IterativeSolver(ABC):
 
     @abstractmethod
     def solve(self, right: Array, accuracy: float = 0.0) -> Array:
-        """Solution for one right-hand side (n,) of the last system; its error over its size may be ``accuracy``."""
+        """Solution for one right-hand side (n,) of the last system; its error over its size may be ``accuracy``.
+
+        Raises
+        ------
+        InputError
+            If there is no system yet.
+        """
 
     @abstractmethod
     def close(self) -> None:
@@ -158,16 +164,8 @@ class SuperLU:
             raise ConvergenceError(f"the sparse direct solver failed ({error}); {CAUSES}") from error
 
     def solve(self, right: Array) -> Array:
-        """Solution for one right-hand side (n,).
-
-        Raises
-        ------
-        InputError
-            If no matrix was factored.
-        """
-        if self._factor is None:
-            raise InputError("factor a matrix before solving")
-        return self._factor.solve(right)
+        """Solution for one right-hand side (n,)."""
+        return of_last_matrix(self._factor).solve(right)
 
     def close(self) -> None:
         """Drop the factor."""

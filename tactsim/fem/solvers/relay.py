@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, InputError
+from tactsim.errors import ConvergenceError
 from tactsim.fem.solvers.linear import IterativeSolver, LinearSystem
+from tactsim.fem.solvers.pardiso import of_last_matrix
 
 
 class Relay(IterativeSolver):
@@ -59,19 +60,16 @@ class Relay(IterativeSolver):
 
         Raises
         ------
-        InputError
-            If there is no system yet.
         ConvergenceError
             If the last of the solvers fails.
         """
-        if self._system is None:
-            raise InputError("factor a matrix before solving")
+        system = of_last_matrix(self._system)
         try:
             return self.current.solve(right, accuracy)
         except ConvergenceError:
             if not self._others:
                 raise
-            self._hand_on(self._system)
+            self._hand_on(system)
             return self.solve(right, accuracy)
 
     def close(self) -> None:

@@ -16,8 +16,9 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.linalg import LinearOperator, gcrotmk
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, InputError
+from tactsim.errors import ConvergenceError
 from tactsim.fem.solvers.linear import DirectSolver, IterativeSolver, LinearSystem
+from tactsim.fem.solvers.pardiso import of_last_matrix
 
 WORTH_A_FACTOR = 30
 """Solutions with a factor that count as much as a new one; the system after them is factored. In processor time a factor costs 18
@@ -70,16 +71,13 @@ class ReusedFactor(IterativeSolver):
 
         Raises
         ------
-        InputError
-            If there is no matrix yet.
         ConvergenceError
             If the right-hand side holds numbers that are not finite, or the solution leaves more than it may.
         """
-        if self._system is None:
-            raise InputError("factor a matrix before solving")
+        system = of_last_matrix(self._system)
         if not np.isfinite(right).all():
             raise ConvergenceError("the right-hand side holds numbers that are not finite")
-        matrix, begin, accuracy = self._system.matrix, None, min(accuracy, self._largest_error)
+        matrix, begin, accuracy = system.matrix, None, min(accuracy, self._largest_error)
         if not right.any():
             return np.zeros_like(right)
         if not self._current and self._spent < self._worth:
@@ -87,7 +85,7 @@ class ReusedFactor(IterativeSolver):
             if left <= 2 * max(accuracy, FINEST):
                 return begin
         if not self._current:
-            self._factor_anew(self._system)
+            self._factor_anew(system)
         solution, left = self._iterated(matrix, right, begin, max(accuracy, FINEST), cycles=MOST_CYCLES)
         if not left <= max(2 * accuracy, self._largest_left):
             raise ConvergenceError(
@@ -96,6 +94,7 @@ class ReusedFactor(IterativeSolver):
         return solution
 
     def _factor_anew(self, system: LinearSystem) -> None:
+        self._spent = self._worth  # a factor that fails serves no later system
         self._direct.factor(system.nearby)
         self.factorisations += 1
         self._current, self._spent = True, 0

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
@@ -65,34 +65,51 @@ def contact_solution(
     ConvergenceError
         If Newton fails.
     """
+    attempt = _Attempt(problem, contacts, action, coarse, guess)
+    begun = attempt.warm_started() if from_guess else contacts
+    for _ in range(HELD_ROUNDS):
+        try:
+            return attempt.solved(begun)
+        except ConvergenceError as stalled:
+            if not stalled.history or stalled.history[-1] > STALLED:
+                raise
+        between = attempt.solved([held(contact, move) for contact, move in attempt.moves])
+        attempt = replace(attempt, guess=between.unknowns, rigid_displacement=between.rigid_displacement)
+        begun = attempt.warm_started()
+    return attempt.solved(begun)
 
-    def warm_started() -> list[PosedContact]:
-        """The contacts with the forces that belong to the guess."""
-        moves = point_displacements(problem.body, guess, contacts, load_control, rigid_displacement)
-        return [begun_from(contact, contact.at(move)) for contact, move in zip(contacts, moves, strict=True)]
 
-    def solve(interfaces: Sequence[PosedContact]) -> Equilibrium:
-        """From the guess, with what acts."""
-        return problem.solve(
-            guess,
-            interfaces=interfaces,
-            loads=action.loads,
-            load_control=load_control,
-            rigid_displacement=rigid_displacement,
-            relaxation=action.relaxation,
-            coarse=coarse,
+@dataclass(frozen=True)
+class _Attempt:
+    """Where Newton starts: at a ``guess`` (size,), with the rigid bodies moved on by ``rigid_displacement`` in m."""
+
+    problem: Problem
+    contacts: Sequence[PosedContact]
+    action: Action
+    coarse: float
+    guess: Array
+    rigid_displacement: float = 0.0
+
+    @property
+    def moves(self) -> Iterator[tuple[PosedContact, Array]]:
+        """Each contact with the displacements (d, n) of its points in m."""
+        body, control = self.problem.body, self.action.load_control
+        return zip(
+            self.contacts, point_displacements(body, self.guess, self.contacts, control, self.rigid_displacement), strict=True
         )
 
-    load_control, rigid_displacement = action.load_control, 0.0
-    begun = warm_started() if from_guess else list(contacts)
-    for held_round in range(HELD_ROUNDS + 1):
-        try:
-            return solve(begun)
-        except ConvergenceError as stalled:
-            if held_round == HELD_ROUNDS or not stalled.history or stalled.history[-1] > STALLED:
-                raise
-        moves = point_displacements(problem.body, guess, contacts, load_control, rigid_displacement)
-        between = solve([held(contact, move) for contact, move in zip(contacts, moves, strict=True)])
-        guess, rigid_displacement = between.unknowns, between.rigid_displacement
-        begun = warm_started()
-    raise AssertionError("the last round returns or raises")
+    def warm_started(self) -> list[PosedContact]:
+        """The contacts with the forces that belong to the guess."""
+        return [begun_from(contact, contact.at(move)) for contact, move in self.moves]
+
+    def solved(self, interfaces: Sequence[PosedContact]) -> Equilibrium:
+        """Newton's solution with these contacts; raises ConvergenceError."""
+        return self.problem.solve(
+            self.guess,
+            interfaces=interfaces,
+            loads=self.action.loads,
+            load_control=self.action.load_control,
+            rigid_displacement=self.rigid_displacement,
+            relaxation=self.action.relaxation,
+            coarse=self.coarse,
+        )

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from typing import Protocol
 
 from tactsim.array import Array
-from tactsim.errors import ConvergenceError, TooShort
+from tactsim.errors import ConvergenceError
 from tactsim.mechanics.contact.posed_contact import PosedContact
 
 ATTEMPTS = 12
@@ -61,8 +61,6 @@ def state_near(
     for _ in range(ATTEMPTS):
         try:
             reached = moved(search.displacement, guess)
-        except TooShort:
-            raise
         except ConvergenceError:
             search.failed()
             continue

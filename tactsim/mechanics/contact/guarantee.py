@@ -87,7 +87,7 @@ def check_accepted(problem: Problem, state: ContactEquilibrium, action: Action) 
         fault = fault or _contact_fault(body, state, contact, f"rigid body {number}")
     if fault is None:
         recorded = tuple(_Recorded(contact) for contact in state.contacts)
-        forces = ExternalForces(recorded, tuple(action.loads), None, action.load_control)  # type: ignore[arg-type]
+        forces = ExternalForces(recorded, tuple(action.loads), action.load_control)  # type: ignore[arg-type]
         balance = problem.balance(forces, action.relaxation)
         now = balance.at(state.unknowns, kinematics, 0.0)
         fault = _unbalanced(balance, now)
@@ -128,8 +128,8 @@ def _finite(arrays: Sequence[Array]) -> bool:
 
 
 def _inside_out(body: Body, kinematics: Kinematics) -> str | None:
-    J = body.oriented_volume_ratio(kinematics)[~body.linear]
-    return f"{inside_out_in_words(body, kinematics)}; allowed: above 0" if J.size and J.min() <= 0 else None
+    inside_out = body.oriented_volume_ratio(kinematics).min() <= 0
+    return f"{inside_out_in_words(body, kinematics)}; allowed: above 0" if inside_out else None
 
 
 def _contact_fault(body: Body, state: ContactEquilibrium, contact: PosedContact, name: str) -> str | None:

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -36,31 +37,40 @@ def bonded_block_rate(shear_modulus: float, size: Sequence[float]) -> float:
     return 6 * shear_modulus * (1 + 2 * shape**2) / height
 
 
+@dataclass(frozen=True)
 class PenetrationEffect:
-    """The part of the true force that penetration and creep take away, state by state of one run.
+    """The part of the true force that penetration and creep take away in the last of some states of a run.
 
-    ``stiffest`` in Pa/m bounds the growth of the pressure where other loads than the motion make pressure too.
+    Attributes
+    ----------
+    stiffest : in Pa/m, bounds the growth of the pressure where other loads than the motion make pressure too
+    share : the missing part of the force, over the largest force so far, from 0 to 1
+    stiffening : growth of the forces over that in proportion to the displacement, as far as it is known
+    largest_force : of all states, in N
     """
 
-    def __init__(self, stiffest: float = math.inf):
-        self._stiffest = stiffest
-        self._stiffening, self._largest_force = 1.0, 0.0
+    stiffest: float = math.inf
+    share: float = 0.0
+    stiffening: float = 1.0
+    largest_force: float = 0.0
 
-    def share(self, state: ContactEquilibrium) -> float:
-        """The missing part of the force, over the largest force so far, from 0 to 1."""
-        self._largest_force = max(self._largest_force, sum(map(_force, state.contacts)))
-        if not self._largest_force > 0:
-            return 0.0
-        secant = sum(_missing(contact, _secant(contact, state.load, self._stiffest)) for contact in state.contacts)
-        if secant > 0 and math.isinf(self._stiffest) and self._pushed_on(state):
+    def after(self, state: ContactEquilibrium) -> PenetrationEffect:
+        """The effect in the next state."""
+        largest = max(self.largest_force, sum(map(_force, state.contacts)))
+        if not largest > 0:
+            return self
+        secant = sum(_missing(contact, _secant(contact, state.load, self.stiffest)) for contact in state.contacts)
+        stiffening = self.stiffening
+        if secant > 0 and math.isinf(self.stiffest) and _pushed_on(state):
             grown = sum(_missing(contact, contact.growth) for contact in state.contacts)
-            self._stiffening = max(1.0, _exponent(grown / secant, state.contacts[0].grown_over / state.load))
-        return min(1.0, self._stiffening * secant / self._largest_force)
+            stiffening = max(1.0, _exponent(grown / secant, state.contacts[0].grown_over / state.load))
+        share = min(1.0, stiffening * secant / largest)
+        return PenetrationEffect(self.stiffest, share, stiffening, largest)
 
-    @staticmethod
-    def _pushed_on(state: ContactEquilibrium) -> bool:
-        """Whether the last step moved the bodies so far into the tissue that the growth of the forces is known."""
-        return all(c.growth is not None and c.grown_over >= LEAST_SHARE * state.load for c in state.contacts)
+
+def _pushed_on(state: ContactEquilibrium) -> bool:
+    """Whether the last step moved the bodies so far into the tissue that the growth of the forces is known."""
+    return all(c.growth is not None and c.grown_over >= LEAST_SHARE * state.load for c in state.contacts)
 
 
 def _exponent(growth: float, step: float) -> float:

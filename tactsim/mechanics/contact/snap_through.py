@@ -14,13 +14,13 @@ Source: Kelley & Keyes 1998, doi:10.1137/S0036142996304796, for such continuatio
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol, TypeVar
+from typing import TypeVar
 
-from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.regularising_springs import AnchoredSprings
+from tactsim.fem.paths.states import PathState
 
 FIRST_DRAG = 1e4
 """Stiffness of all drag together over that of the body, its shear modulus times its size: in an element of a fiftieth of the size
@@ -32,15 +32,7 @@ MOST_STEPS = 30
 """Steps in pseudo-time before a snap counts as failed."""
 
 
-class Snapping(Protocol):
-    """A state on the way."""
-
-    @property
-    def unknowns(self) -> Array:
-        """Those of the body (size,)."""
-
-
-State = TypeVar("State", bound=Snapping)
+State = TypeVar("State", bound=PathState)
 
 
 def after_snap(body: Body, state: State, solve: Callable[[State, Sequence[FollowerLoad]], State]) -> State:

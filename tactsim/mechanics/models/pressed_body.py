@@ -3,36 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from typing import Protocol
+from typing import TYPE_CHECKING
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body, RelaxationStep
-from tactsim.fem.assembly.external_forces import FollowerLoad
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 
-
-class Pressed(Protocol):
-    """A model with rigid bodies that move together."""
-
-    @property
-    def body(self) -> Body:
-        """What deforms."""
-
-    def equilibrium(
-        self,
-        state: ContactEquilibrium,
-        load: float,
-        guess: Array,
-        *,
-        force: float | None = None,
-        relaxation: RelaxationStep | None = None,
-        loads: Sequence[FollowerLoad] = (),
-    ) -> ContactEquilibrium:
-        """The equilibrium at a displacement ``load`` in m, or on from there until the bodies press with a ``force`` in N.
-
-        Newton starts from the ``guess`` (size,).
-        """
+if TYPE_CHECKING:
+    from tactsim.mechanics.models.block_model import GraspModel
+    from tactsim.mechanics.models.pressed_model import PressedModel
 
 
 class PressedBody:
@@ -50,7 +30,7 @@ class PressedBody:
 
     def __init__(
         self,
-        model: Pressed,
+        model: PressedModel | GraspModel,
         *,
         by_force: bool,
         first_displacement: float,

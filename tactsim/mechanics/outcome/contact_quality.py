@@ -72,13 +72,14 @@ class ContactQuality:
         unstable, weights = ~elliptic_in(body, state.kinematics), body.points.weights
         self._unstable = unstable if self._unstable is None else self._unstable | unstable
         self._strains.saw(body, state.kinematics)
+        self._effect = self._effect.after(state)
         pressing = [contact.state.pressure > 0 for contact in state.contacts]
         self._touching = max(self._touching, sum(int(points.sum()) for points in pressing))
         self._all_touch = self._all_touch or not pressing or any(points.all() for points in pressing)
         return {
             "min_volume_ratio": float(state.kinematics.J.min()),
             "unstable_volume_fraction": float(weights[self._unstable].sum() / weights.sum()),
-            "penetration_force_error": self._effect.share(state),
+            "penetration_force_error": self._effect.share,
             "poor_volume_fraction": self._volumes.poor_share(body, state),
         }
 

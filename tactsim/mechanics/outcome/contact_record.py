@@ -111,10 +111,14 @@ class ContactRecord(ABC, Generic[Model]):
     def kept_as(self, state: TimedState, event: bool) -> Sequence[str]:
         """Names under which the fields of a state are kept, each until another state takes it."""
 
+    @property
+    def _reported(self) -> list[StepRecord]:
+        """The steps of which numbers are reported: the event and the last one."""
+        return [step for step in (self.event, *self.steps[-1:]) if step is not None]
+
     def findings(self) -> Findings:
-        """What everything that was accepted says; no success if a reported state, the event or the last one, is none."""
-        reported = [step for step in (self.event, *self.steps[-1:]) if step is not None]
-        status, reason = judged(*self.verdict(), reported, self.tolerance)
+        """What everything that was accepted says; no success if a reported state is none."""
+        status, reason = judged(*self.verdict(), self._reported, self.tolerance)
         return Findings(
             reason,
             self.steps,

@@ -59,10 +59,10 @@ class SufficientContact:
         """
         if now is not self._accepted:
             self._accepted = now
-            self._effect.share(now)
+            self._effect = self._effect.after(now)
         reached = self._problem.equilibrium(now, loads, guess, relaxation)
         for _ in range(MOST_TIGHTENINGS if loads[0] >= LARGEST_LOAD * self._largest else 0):
-            error = self._effect.share(reached)
+            error = self._effect.after(reached).share  # a step that may be taken back
             if error <= LARGEST_FORCE_ERROR:
                 break
             start = _tightened(now, reached, error)

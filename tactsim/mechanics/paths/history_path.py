@@ -156,7 +156,7 @@ class TimedState:
 
 
 class TimedPath:
-    """Follows prescribed histories from ``start``; ``rejected`` counts the steps that were taken back.
+    """Follows prescribed histories from ``start``.
 
     Raises
     ------
@@ -168,10 +168,14 @@ class TimedPath:
         self, problem: EquilibriumProblem, step_policy: TimeStepPolicy, course: Sequence[TimeInterval], start: TimedState
     ):
         self._problem, self._step_policy, self._course, self.start = problem, step_policy, course, start
-        self._accepted = start
+        self._followers: list[PathFollower[_JumpState] | TimeMarcher[TimedState]] = []
         asked = sum(len(step_policy.stops(interval)) + interval.duration / step_policy.largest(interval) for interval in course)
         check_steps(asked, "loading, with the steps and stops that time sets for its pieces,")
-        self.rejected = 0
+
+    @property
+    def rejected(self) -> int:
+        """Steps that were taken back, those of a path that gave up included."""
+        return sum(follower.rejected for follower in self._followers)
 
     def states(self, event: TimeEvent[TimedState] | None = None) -> Iterator[tuple[TimedState, bool]]:
         """Every accepted state up to the end or the event, with whether it is the event.
@@ -208,8 +212,8 @@ class TimedPath:
 
         within = None if event is None else Event[_JumpState](lambda now: event.value(now.state), event.tolerance)
         follower = PathFollower(advance, JUMP)
+        self._followers.append(follower)
         *_, (last, happened) = follower.follow(_JumpState(0.0, start), 1.0, within)
-        self.rejected += follower.rejected
         if happened:
             return last.state, True
         # Once more with the contact as stiff as the new pressure asks, so that later steps do not have to.
@@ -234,13 +238,9 @@ class TimedPath:
         if start.history_variables is not None:
             start = replace(start, history_variables=start.history_variables.at_slope_change())
         marcher = TimeMarcher(advance, partial(self._error, interval), self._step_policy.control(interval))
-        self._accepted = start
+        self._followers.append(marcher)
         stops, largest = self._step_policy.stops(interval), self._step_policy.largest(interval)
-        for state, happened in marcher.march(start, stops, largest=largest, event=event):
-            self.rejected += marcher.rejected
-            marcher.rejected = 0
-            self._accepted = state
-            yield state, happened
+        yield from marcher.march(start, stops, largest=largest, event=event)
 
     def _reached(self, now: TimedState, time: float, loads: tuple[float, ...], guess: Array) -> TimedState:
         """The equilibrium at a time and prescribed values."""
@@ -253,13 +253,12 @@ class TimedPath:
             history_variables = now.history_variables.advanced(elastic, step)
         return TimedState(time, loads, contact, history_variables, relaxation)
 
-    def _error(self, interval: TimeInterval, state: TimedState) -> float:
+    def _error(self, interval: TimeInterval, before: TimedState, state: TimedState) -> float:
         """Estimated error of the stress over its size, which counts at least as if it had grown all the interval as it does now.
 
         Why: a body that touches its first points makes a kink, after which the stress has only begun to grow. Beside what there
         is of it the error of a step with the kink is as large however short the step.
         """
-        before = self._accepted
         if state.history_variables is None or before.history_variables is None:
             return 0.0
         body = self._problem.body

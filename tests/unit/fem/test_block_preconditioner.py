@@ -56,7 +56,7 @@ def system(cells, *, bulk_modulus=None, contact=True, hold=True, giving_way=0.0)
         derivative = np.zeros((3, 3, len(penalty)))
         derivative[2, 2], derivative[0, 2] = -penalty, FRICTION * penalty
         derivative[0, 0] = giving_way * np.where(along > 0.6, penalty, 0.0)
-        data += SurfaceAssembly(points, body.pattern, 3).stiffness(derivative)
+        SurfaceAssembly(points, body.pattern, 3).add_stiffness(data, derivative)
     floor = np.concatenate([held(mesh, axis, on_plane(2, 0.0)) for axis in range(3)]) if hold else np.zeros(0, int)
     constraints = Constraints(floor, body.pattern)
     matrix = body.pattern.matrix(constraints.apply(data))
@@ -187,6 +187,22 @@ def test_a_coarse_factor_that_failed_serves_no_later_system(monkeypatch):
     made = counted_factors(solver, monkeypatch)
     solved(solver, pressed, right, FINEST_STEP)
     assert len(made) == 1
+
+
+def test_a_factor_of_the_pressures_that_failed_serves_no_later_system(monkeypatch):
+    body, pressed, right = system((3, 3, 2), bulk_modulus=1e6)
+    solver = BlockPreconditioned(body)
+    solved(solver, pressed, right, FINEST_STEP)
+
+    def failing(matrix):
+        solver._schur.close()
+        raise ConvergenceError("a zero pivot")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(solver._schur, "factor", failing)
+        with pytest.raises(ConvergenceError, match="a zero pivot"):
+            solved(solver, 2 * pressed, right, FINEST_STEP)
+    solved(solver, pressed, right, FINEST_STEP)
 
 
 class Recording(BlockPreconditioned):

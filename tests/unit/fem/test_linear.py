@@ -269,6 +269,23 @@ def test_a_factor_too_old_is_made_again_and_closing_forgets_it():
         solver.solve(right)
 
 
+def test_a_new_factor_that_fails_guides_no_later_system(monkeypatch):
+    matrix, right = tangent_of(3, axes=3)
+    direct = direct_solver("pardiso_symmetric")
+    solver = ReusedFactor(direct, most=2)
+    solved(solver, matrix, right, 1e-8)
+
+    def failing(_matrix):
+        direct.close()
+        raise ConvergenceError("a zero pivot")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(direct, "factor", failing)
+        with pytest.raises(ConvergenceError, match="a zero pivot"):
+            solved(solver, changed(matrix, 0.2), right, 1e-8)
+    assert left_over(matrix, solved(solver, matrix, right, 1e-8), right) < 1e-7
+
+
 def test_the_nearby_matrix_is_made_only_where_it_is_factored():
     matrix, right = tangent_of(3, axes=3)
     solver, made = ReusedFactor(direct_solver("pardiso_single")), []

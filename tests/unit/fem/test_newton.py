@@ -11,11 +11,16 @@ from solids import body_of, box, facets_where, held, on_plane
 
 from tactsim.deadline import time_limit
 from tactsim.errors import ConvergenceError, OutOfTime
+from tactsim.fem.assembly.body import Body
+from tactsim.fem.assembly.dead_load import DeadLoad
 from tactsim.fem.assembly.pressure import FollowerPressure
+from tactsim.fem.assembly.space import TaylorHood
 from tactsim.fem.assembly.surface import SurfaceAssembly
 from tactsim.fem.equilibrium import newton
+from tactsim.fem.equilibrium.balance import ExternalForces
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
+from tactsim.fem.equilibrium.newton_step import NewtonStep
 from tactsim.fem.solvers.linear import direct_solver
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
@@ -43,7 +48,7 @@ def block(dim, material, *, held_axes):
 @pytest.mark.parametrize("name", MATERIALS)
 def test_newton_ends_below_its_tolerance_and_says_how_it_got_there(dim, name):
     body, fixed, force = block(dim, MATERIALS[name], held_axes=range(dim))
-    solved = Problem(body, fixed).solve(np.zeros(body.space.size), nodal_force=force)
+    solved = Problem(body, fixed).solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
     assert solved.history[-1] < NewtonOptions().tolerance < solved.history[0]
     assert solved.iterations == len(solved.history) - 1 <= (1 if name == "linear" else 6)
     assert (solved.unknowns[fixed] == 0.0).all()
@@ -56,7 +61,7 @@ def test_newton_ends_below_its_tolerance_and_says_how_it_got_there(dim, name):
 def test_a_body_without_a_boundary_condition_is_an_error_with_a_diagnosis(dim, name, solver):
     body, fixed, force = block(dim, MATERIALS[name], held_axes=())
     with pytest.raises(ConvergenceError, match="is the body held"):
-        Problem(body, fixed, solver=direct_solver(solver)).solve(np.zeros(body.space.size), nodal_force=force)
+        Problem(body, fixed, solver=direct_solver(solver)).solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -64,7 +69,7 @@ def test_too_few_iterations_raise_with_the_history(dim):
     body, fixed, force = block(dim, MATERIALS["incompressible"], held_axes=range(dim))
     problem = Problem(body, fixed, options=NewtonOptions(max_iterations=2, polished=0.0))
     with pytest.raises(ConvergenceError, match="did not converge in 3 iterations") as caught:
-        problem.solve(np.zeros(body.space.size), nodal_force=force)
+        problem.solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
     assert len(caught.value.history) == 3
     assert np.isfinite(caught.value.history).all()
 
@@ -74,7 +79,7 @@ def test_a_load_far_too_large_for_one_step_raises_and_leaves_the_guess_alone(dim
     body, fixed, force = block(dim, MATERIALS["incompressible"], held_axes=range(dim))
     guess = np.zeros(body.space.size)
     with pytest.raises(ConvergenceError, match=r"Newton|element"):
-        Problem(body, fixed).solve(guess, nodal_force=-1e4 * force)
+        Problem(body, fixed).solve(guess, loads=[DeadLoad(-1e4 * force)])
     assert not guess.any()
 
 
@@ -84,7 +89,7 @@ def test_a_guess_with_an_element_inside_out_is_refused(dim):
     guess = np.zeros(body.space.size)
     body.space.split(guess)[0][-1] = 5.0
     with pytest.raises(ConvergenceError, match="inside out"):
-        Problem(body, fixed).solve(guess, nodal_force=force)
+        Problem(body, fixed).solve(guess, loads=[DeadLoad(force)])
 
 
 def test_a_section_on_the_other_side_of_its_axis_is_inside_out_though_it_keeps_its_volume():
@@ -103,7 +108,7 @@ def test_forces_that_are_not_finite_raise(dim, bad):
     body, fixed, force = block(dim, MATERIALS["compressible"], held_axes=range(dim))
     force[-body.space.corner_count - 1] = bad
     with np.errstate(invalid="ignore"), pytest.raises(ConvergenceError):
-        Problem(body, fixed).solve(np.zeros(body.space.size), nodal_force=force)
+        Problem(body, fixed).solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
 
 
 @pytest.mark.parametrize("dim", [2, 3])
@@ -196,12 +201,12 @@ def test_solving_ends_with_an_error_once_its_time_has_passed_and_only_then():
     body, fixed, force = block(2, MATERIALS["incompressible"], held_axes=range(2))
     problem = Problem(body, fixed)
     with pytest.raises(OutOfTime, match=r"took longer than the 1e-09 s"), time_limit(1e-9):
-        problem.solve(np.zeros(body.space.size), nodal_force=force)
+        problem.solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
     with pytest.raises(OutOfTime), time_limit(1e-9), time_limit(None):
-        problem.solve(np.zeros(body.space.size), nodal_force=force)
+        problem.solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
     with time_limit(60.0):
-        inside = problem.solve(np.zeros(body.space.size), nodal_force=force)
-    after = problem.solve(np.zeros(body.space.size), nodal_force=force)
+        inside = problem.solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
+    after = problem.solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
     np.testing.assert_array_equal(inside.unknowns, after.unknowns)
 
 
@@ -209,11 +214,46 @@ def test_the_last_factor_spares_tangents_and_ends_at_the_same_equilibrium():
     """Each iteration counted is a tangent and a factor; steps with the last factor come between them, down to the tolerance."""
     body, fixed, force = block(2, MATERIALS["incompressible"], held_axes=range(2))
     guess = np.zeros(body.space.size)
-    exact = Problem(body, fixed, options=NewtonOptions(polished=0.0)).solve(guess, nodal_force=force)
+    exact = Problem(body, fixed, options=NewtonOptions(polished=0.0)).solve(guess, loads=[DeadLoad(force)])
     problem = Problem(body, fixed)
-    spared = problem.solve(guess, nodal_force=force)
+    spared = problem.solve(guess, loads=[DeadLoad(force)])
     assert spared.history[-1] < NewtonOptions().tolerance
     assert spared.iterations <= 2 < exact.iterations
     assert spared.unknowns == pytest.approx(exact.unknowns, abs=1e-8 * np.abs(exact.unknowns).max())
-    again = problem.solve(spared.unknowns, nodal_force=1.001 * force)
+    again = problem.solve(spared.unknowns, loads=[DeadLoad(1.001 * force)])
     assert again.iterations == 0, "the factor of the solution before is good enough for a small change"
+
+
+def test_a_linear_part_that_is_inside_out_lets_no_other_part_turn_so():
+    """J says nothing of small strains; its least value of the others bounds a step."""
+    mesh = box([1.0, 1.0], [2, 2])
+    left = mesh.nodes[mesh.elements[:, :3], 0].mean(axis=1) < 0.5
+    space = TaylorHood(mesh.nodes, mesh.elements, "plane_strain", left.astype(int))
+    body = Body(space, [MATERIALS["compressible"], MATERIALS["linear"]], left.astype(int))
+    guess, step = np.zeros(space.size), np.zeros(space.size)
+    x = mesh.nodes[:, 0]
+    space.split(guess)[0][:, 0] = np.where(x < 0.5, -2 * x, -1.0)  # turns the linear half over
+    space.split(step)[0][:, 0] = np.where(x > 0.5, -1.05 * (x - 0.5), 0.0)
+    before = body.kinematics(guess)
+    assert before.J.min() < -0.9
+    balance = Problem(body, np.zeros(0, int)).balance(ExternalForces())
+    solution = newton._Solution(balance, direct_solver(), NewtonOptions(), 1e-10)
+    damping, after = solution._damped(balance.at(guess, before, 0.0), NewtonStep(step, 0.0))
+    assert damping == 0.5
+    assert body.oriented_volume_ratio(after).min() > 0.2
+
+
+def test_a_factor_that_failed_polishes_no_later_solution(monkeypatch):
+    body, fixed, force = block(2, MATERIALS["compressible"], held_axes=range(2))
+    problem, zero = Problem(body, fixed, solver=direct_solver("superlu")), np.zeros(body.space.size)
+    solved = problem.solve(zero, loads=[DeadLoad(force)])
+
+    def failing(matrix):
+        problem.solver.close()
+        raise ConvergenceError("a zero pivot")
+
+    with monkeypatch.context() as patched:
+        patched.setattr(problem.solver, "factor", failing)
+        with pytest.raises(ConvergenceError, match="a zero pivot"):
+            problem.solve(zero, loads=[DeadLoad(force)])
+    assert problem.solve(solved.unknowns, loads=[DeadLoad(1.01 * force)]).history[-1] < NewtonOptions().tolerance

@@ -31,7 +31,7 @@ def marching(*, tolerance=1e-3, first=1e-3, scale=1.0, fail=lambda time: False):
         return Clock(time, time - now.time)
 
     control = TimeControl(tolerance, first=first, smallest=1e-6)
-    return TimeMarcher(advance, lambda state: scale * state.step**3, control)
+    return TimeMarcher(advance, lambda now, state: scale * state.step**3, control)
 
 
 def test_steps_grow_until_the_error_reaches_its_tolerance():
@@ -66,7 +66,7 @@ def test_a_step_that_never_converges_gives_up_with_its_time():
     assert marcher.rejected > 5
 
 
-def hidden(until, *, error=lambda state: state.step**3):
+def hidden(until, *, error=lambda now, state: state.step**3):
     """Steps whose load cannot be seen before a time."""
 
     def advance(now, time, guess):
@@ -89,7 +89,7 @@ def test_a_step_that_is_too_short_is_lengthened_beyond_stops_that_no_step_can_en
 def test_a_stop_that_round_off_does_not_reach_ends_no_search():
     """The search for a step that is long enough would go on for ever there."""
     start, stop = 0.1, next(s for s in np.linspace(0.3, 1.0, 99) if 0.1 + (s - 0.1) < s)
-    times = [state.time for state, _ in hidden(1.5, error=lambda state: 0.0).march(Clock(start), [stop, 3.0], largest=5.0)]
+    times = [state.time for state, _ in hidden(1.5, error=lambda now, state: 0.0).march(Clock(start), [stop, 3.0], largest=5.0)]
     assert times[-1] == 3.0
 
 
@@ -101,7 +101,7 @@ def test_steps_towards_a_load_that_is_hidden_are_shortened():
             raise TooShort("hidden")
         return Clock(time, time - now.time)
 
-    marcher = TimeMarcher(advance, lambda state: state.step**3, TimeControl(1e-3, first=1e-3, smallest=1e-6))
+    marcher = TimeMarcher(advance, lambda now, state: state.step**3, TimeControl(1e-3, first=1e-3, smallest=1e-6))
     accepted = [0.0]
     with pytest.raises(ConvergenceError, match=r"gave up at 0\.\d+ s: hidden"):
         accepted.extend(state.time for state, _ in marcher.march(Clock(0.0), [0.5, 1.0], largest=1.0))
@@ -115,6 +115,8 @@ def test_a_load_that_the_longest_step_hides_gives_up(stops, largest):
 
 
 def test_an_error_that_never_falls_gives_up():
-    marcher = TimeMarcher(lambda now, time, guess: Clock(time), lambda state: 1.0, TimeControl(1e-3, first=0.1, smallest=1e-4))
+    marcher = TimeMarcher(
+        lambda now, time, guess: Clock(time), lambda now, state: 1.0, TimeControl(1e-3, first=0.1, smallest=1e-4)
+    )
     with pytest.raises(ConvergenceError, match="the error"):
         list(marcher.march(Clock(0.0), [5.0], largest=1.0))

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
+import numpy as np
 import pytest
 
 from tactsim.experiments.grasp import path, setup
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.mechanics.outcome import sufficient_contact
 from tactsim.mechanics.outcome.success import LARGEST_FORCE_ERROR
 from tactsim.results.result import Result, Status
 
@@ -44,3 +48,25 @@ def test_a_tolerance_that_was_asked_for_stays(coarse_default: None) -> None:
     example = Grasp.example()
     asked = example.model_copy(update={"penetration_tolerance": example.tolerance})
     assert asked.run().status is Status.FAILED
+
+
+def pressing(force: float) -> SimpleNamespace:
+    """A state under a force in N of which penetration takes away 2 %."""
+    pressure, weights = np.array([force]), np.ones(1)
+    state = SimpleNamespace(pressure=pressure, tangential=np.zeros((1, 1)), traction=pressure[None], points=None, creep=0.0)
+    pair = SimpleNamespace(body=SimpleNamespace(signed_distance=lambda _points: (np.array([-0.02]),)))
+    surface = SimpleNamespace(points=SimpleNamespace(weights=weights), total=lambda traction: traction @ weights)
+    contact = SimpleNamespace(state=state, pair=pair, surface=surface, growth=None)
+    return SimpleNamespace(contacts=(contact,), load=1.0, unknowns=np.zeros(1))
+
+
+def test_a_step_that_was_taken_back_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its force may be larger than any of the run; beside it what penetration takes away would look small."""
+    monkeypatch.setattr(sufficient_contact, "_tightened", lambda now, reached, error: now)
+    monkeypatch.setattr(sufficient_contact, "MOST_TIGHTENINGS", 1)
+    start, taken_back, loose, tight = map(pressing, (1.0, 100.0, 2.0, 2.0))
+    reached = iter((taken_back, taken_back, loose, tight))
+    inner = SimpleNamespace(body=None, equilibrium=lambda *_: next(reached))
+    problem = sufficient_contact.SufficientContact(inner, 1.0)
+    assert problem.equilibrium(start, (1.0,), np.zeros(1), None) is taken_back
+    assert problem.equilibrium(start, (1.0,), np.zeros(1), None) is tight

@@ -10,6 +10,8 @@ from small_problems import CUBE, PLANES, ROD, SIDE, asked, number, result_of
 
 from tactsim.errors import InputError
 from tactsim.experiments.boundary_value.boundary_value_problem import BoundaryValueProblem
+from tactsim.mechanics.outcome.success import LARGEST_FORCE_ERROR
+from tactsim.results.result import Status
 
 pytestmark = pytest.mark.usefixtures("one_thread")
 
@@ -65,3 +67,29 @@ def test_no_energy_is_asked_of_a_law_that_has_none():
     law = PrincipalOgden(modulus=1e3, alpha=2.0)
     with pytest.raises(InputError, match="the material principal_ogden gives no energy; write its method"):
         BoundaryValueProblem(dimension="3d", geometry=CUBE, material=law, conditions=PLANES, asked=asked("energy"))
+
+
+def test_a_number_of_an_early_time_is_held_to_what_penetration_may_take_away():
+    """Under a ball it takes away most where least is pressed."""
+    ball = {"face": "top", "side": "top", "body": {"kind": "sphere", "radius": SIDE}, "z": -SIDE / 4}
+    cylinder = {
+        "kind": "cylinder",
+        "radial": [{"length": SIDE, "cells": 16, "ratio": 3.0}],
+        "axial": [{"length": SIDE, "cells": 10}],
+    }
+    force = {"kind": "contact_force", "component": "z"}
+    fields = {
+        "dimension": "axisymmetric",
+        "geometry": cylinder,
+        "material": {"kind": "neo_hookean", "c10": 1e3},
+        "conditions": [{"kind": "clamped", "face": "bottom"}],
+        "contacts": [ball],
+        "penetration_tolerance": 1.25e-3 * SIDE,
+    }
+    at_the_end = BoundaryValueProblem.model_validate({**fields, "asked": {"force": force}}).run()
+    assert at_the_end.status is Status.CONVERGED
+    assert at_the_end.steps[0].values["penetration_force_error"] > LARGEST_FORCE_ERROR
+    early = BoundaryValueProblem.model_validate({**fields, "asked": {"force": {**force, "time": 0.1}}}).run()
+    assert early.status is Status.FAILED
+    assert early.reason.startswith("penetration takes away")
+    assert early.reason.endswith("at a time of 100 ms")

@@ -219,6 +219,16 @@ def test_a_failure_keeps_what_was_accepted(monkeypatch):
     assert result.scene.solver.rejected_steps > 0
 
 
+def test_steps_that_were_taken_back_before_a_failure_are_counted(monkeypatch):
+    def failing(self, state, closing, guess, **more):
+        raise ConvergenceError("no way")
+
+    monkeypatch.setattr(GraspModel, "equilibrium", failing)
+    result = run(mesh=FEW | {"cells": (1, 1, 1)})
+    assert not result.steps
+    assert result.scene.solver.rejected_steps > 5
+
+
 def test_an_interruption_keeps_what_was_accepted():
     def interrupting(step):
         raise KeyboardInterrupt
