@@ -54,8 +54,8 @@ class Scales:
 @dataclass(frozen=True)
 class NewtonState:
     """Where Newton is: ``unknowns`` (size,), ``internal`` (size,) less external nodal forces in N, displacements (d, n) of each
-    interface's points relative to its rigid displacement in m, tractions (d, n) in Pa, the relative ``residual``, and the root of
-    the sum of all squared ``unbalanced`` forces in N."""
+    interface's points relative to its rigid displacement in m, tractions (d, n) in Pa, the relative ``residual``, and the roots
+    of the sums of all squared ``unbalanced`` forces of nodes and of those of the interfaces, in N."""
 
     unknowns: Array
     kinematics: Kinematics
@@ -65,6 +65,7 @@ class NewtonState:
     tractions: tuple[Array, ...]
     residual: float
     unbalanced: float
+    contact_force: float
 
 
 @dataclass(frozen=True)
@@ -110,21 +111,24 @@ class Balance:
         moved = point_displacements(self.body, unknowns, interfaces, control, rigid_displacement)
         tractions = tuple(interface.converged(d) for interface, d in zip(interfaces, moved, strict=True))
         rounding = [interface.rounding(d) for interface, d in zip(interfaces, moved, strict=True)]
-        residual, unbalanced = self._norms(internal, largest, tractions, self.scales.rounding_at(kinematics.F), rounding)
+        contact = [interface.surface.force(traction) for interface, traction in zip(interfaces, tractions, strict=True)]
+        residual, unbalanced = self._norms(internal, largest, contact, self.scales.rounding_at(kinematics.F), rounding)
         if control is not None:
             surfaces = [interface.surface for interface in interfaces]
             residual = max(residual, control.error(surfaces, tractions, rounding, self.tolerance))
-        return NewtonState(unknowns, kinematics, rigid_displacement, internal, moved, tractions, residual, unbalanced)
+        contact_force = float(np.sqrt(sum(force @ force for force in contact)))
+        return NewtonState(
+            unknowns, kinematics, rigid_displacement, internal, moved, tractions, residual, unbalanced, contact_force
+        )
 
     def _norms(
-        self, internal: Array, largest: float, tractions: Sequence[Array], noise: Array, rounding: Sequence[Array]
+        self, internal: Array, largest: float, contact: Sequence[Array], noise: Array, rounding: Sequence[Array]
     ) -> tuple[float, float]:
         """Largest unbalanced force over the largest force (or the node's round-off over the tolerance), or largest volume
         error over the mean nodal volume; and the root of the sum of all squared unbalanced forces in N."""
         residual, split, counted = internal.copy(), self.body.space.displacement_size, self.constraints.counted
         scale = max(largest, float(np.abs(counted(internal[:split])).max()))
-        for interface, traction, lost in zip(self.forces.interfaces, tractions, rounding, strict=True):
-            force = interface.surface.force(traction)
+        for interface, force, lost in zip(self.forces.interfaces, contact, rounding, strict=True):
             scale = max(scale, float(np.abs(counted(force)).max()))
             residual -= force
             noise = noise + interface.surface.largest_force(lost)[:split]

@@ -33,8 +33,13 @@ LARGEST_GROWTH, DISTORTED = 4.0, 0.75
 of the largest, has gone astray and is halved. Forces alone do not say so: where points of a contact change their state, they may
 grow a hundredfold on the way to it."""
 NEAR = 0.1
-"""Residual of a guess below which Newton starts from the contact forces that hold there, not from those of the last step, and
-below which a step that goes astray is no reason to mistrust those that follow."""
+"""Residual of a guess, and its unbalanced forces over those of the contact, below which Newton starts from the contact forces
+that hold there, not from those of the last step; and residual below which a step that goes astray is no reason to mistrust those
+that follow.
+
+Why both: a residual is over the largest force of a node, which grows with the cells. Where those at the base are ten times those
+at the contact, a body that goes back by more than its penetration leaves all points open at a residual of 0.07. Newton then took
+the whole contact off the tissue: a ball in a sine wave took 989 linear systems, now 269."""
 CONTRACTION = 0.3
 """A step with an old factor that leaves more than this part of the residual is dropped."""
 MOST_FURTHER = 5.0
@@ -138,7 +143,7 @@ class _Solution:
             worst = inside_out_in_words(self._body, self._body.kinematics(unknowns))
             raise ConvergenceError(f"an element is inside out in the state that Newton starts from: {worst}")
         state = self._balance.at(unknowns, kinematics, rigid_displacement)
-        if state.residual < NEAR:
+        if state.residual < NEAR and state.unbalanced < NEAR * state.contact_force:
             self._iterates = self._forces_at(state)
         return self._polished(state)
 
