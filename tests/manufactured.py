@@ -100,7 +100,8 @@ def measured_errors(
     fixed = np.unique(np.concatenate([*(held(mesh, axis, is_held) for axis in range(dim)), held(mesh, 0, on_axis)]))
     displacement = exact.placement(mesh.nodes.T).T - mesh.nodes
     solved = solve_near(body, fixed, displacement, nodal_force=nodal_forces(posed, body, loaded), noise=0.0)
-    fine = Body(space, [exact.material], mesh.regions, quadrature_order=FIELD_ORDER[dim])
+    fine = Body(space, [exact.material], mesh.regions)
+    fine.points = space.volume_points(FIELD_ORDER[dim])
     weights, values = fine.points.weights, fine.points.values
     X = np.einsum("qa,ead->deq", values, mesh.nodes[mesh.elements]).reshape(dim, -1)
     u = np.einsum("qa,ead->deq", values, space.split(solved.unknowns)[0][mesh.elements]).reshape(dim, -1)

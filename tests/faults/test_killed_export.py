@@ -50,7 +50,7 @@ def is_whole(place: Path) -> bool:
     if place.suffix == ".h5":
         with h5py.File(place) as file:
             assert np.isfinite(file["force"][...]).all()
-            assert file["card"][()].decode() == "# A small sweep\n"
+            assert file["card"][()].decode().startswith("# A small sweep\n\n## This export\n")
     else:
         names = ["README.md", "dataset.json", "index.parquet", *(f"shard_{number:05d}.npz" for number in range(3))]
         assert sorted(os.listdir(place)) == names
@@ -119,7 +119,7 @@ def test_a_place_that_is_taken_meanwhile_is_not_replaced(kept: Path, tmp_path: P
     for name in ("flat", "whole.h5"):
         place = tmp_path / name
         card = export._card
-        monkeypatch.setattr(export, "_card", lambda store, place=place, card=card: (place.write_text("mine"), card(store))[1])
+        monkeypatch.setattr(export, "_card", lambda *what, place=place, card=card: (place.write_text("mine"), card(*what))[1])
         with pytest.raises(StorageError, match="exists"):
             export.exported(kept, place)
         assert place.read_text() == "mine"

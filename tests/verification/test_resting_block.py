@@ -56,7 +56,7 @@ def test_a_plane_bears_the_load_of_a_block_that_nothing_else_holds(cells, bulk_m
 
 def test_a_block_would_not_stay_if_what_touches_counted_as_open(one_thread, monkeypatch):
     monkeypatch.setattr(posing, "lying_on", lambda contact: contact)
-    for case in CASES[1:]:
+    for case in CASES[:2]:
         assert BoundaryValueProblem.model_validate(resting(*case)).run().status is Status.FAILED
 
 

@@ -15,6 +15,7 @@ from tactsim.errors import CaseError
 from tactsim.experiments.indentation.graded_section import MeshSettings
 from tactsim.experiments.indentation.timed_indentation import TimedIndentation
 from tactsim.materials.neo_hookean import NeoHookean
+from tactsim.mechanics.contact import contact_equilibrium
 from tactsim.mechanics.models.specimen import Layer, Specimen
 from tactsim.mechanics.paths import history_path
 from tactsim.mechanics.paths.loading import DisplacementLoading, ForceLoading
@@ -219,12 +220,22 @@ def test_a_ramp_of_force_starts_with_a_step_that_its_round_off_does_not_hide():
     assert float(result["reaction_force"].value) == pytest.approx(1e-3, rel=1e-6)
 
 
+HELD_FORCE = forced({"kind": "jump", "to": 30e-3, "duration": 0.3})
+
+
 def test_under_a_force_the_contact_of_tissue_that_relaxes_becomes_softer_where_steps_fail():
     """It comes to the displacement of the contact that stays as stiff as the jump asked, and penetrates more."""
-    result = thin(loading=forced({"kind": "jump", "to": 10e-3, "duration": 0.3}), **STIFF_AT_ONCE).run()
+    result = thin(loading=HELD_FORCE, **STIFF_AT_ONCE).run()
     assert result.status is Status.CONVERGED
-    assert float(result["displacement"].value) == pytest.approx(128.681e-6, rel=1e-3)  # of the contact that stays stiff
-    assert 1e-9 < float(result["max_penetration"].value) < thin().tolerance, "a contact that stays stiff leaves 0.05 nm"
+    assert float(result["displacement"].value) == pytest.approx(346.793e-6, rel=1e-3)  # of the contact that stays stiff
+    assert 5e-9 < float(result["max_penetration"].value) < thin().tolerance, "a contact that stays stiff leaves 1.6 nm"
+
+
+def test_with_friction_a_contact_that_stays_as_stiff_would_not_come_to_its_end(monkeypatch):
+    pressed = thin(loading=HELD_FORCE, **STIFF_AT_ONCE | {"contact": Coulomb(friction=0.4)})
+    assert pressed.run().status is Status.CONVERGED
+    monkeypatch.setattr(contact_equilibrium, "_softened", lambda *_: None)
+    assert pressed.run().status is Status.FAILED
 
 
 @pytest.mark.parametrize("fillet", [0.7e-3, 1.6e-3])
