@@ -103,7 +103,7 @@ def plain_grasp() -> PlainGrasp:
     """The plain tissue at several closings."""
     closings = np.append(0.0, CLOSINGS)
     forces = plain_forces(closings)
-    return PlainGrasp(closings, forces, Readings(forces[-1], LAYOUT, SIZE, noise=0.0))
+    return PlainGrasp(closings, forces, Readings(forces[-1], LAYOUT, SIZE, noise=0.0), grasp_scene(SIZE, LAYOUT))
 
 
 def truths(count: int, seed: int = 1) -> tuple[Truth, ...]:
@@ -146,7 +146,7 @@ def plain_result(folder: Path, closings: np.ndarray = CLOSINGS, layout: TaxelLay
         quantities[f"taxel_force_{side}"] = Quantity(own[-1].tolist(), "N", "")
         if many:
             quantities[f"taxel_force_{side}_history"] = Quantity(own.tolist(), "N", "")
-    scene = grasp_scene(size, layout, width=40e-3, depth=40e-3)
+    scene = grasp_scene(size, layout)
     steps = tuple(StepRecord(k + 1, 3, 0.0, {"displacement": float(c)}) for k, c in enumerate(closings))
     result = Result("grasp", Status.CONVERGED, "made up", quantities, steps=steps, units={"displacement": "m"}, scene=scene)
     write_result(result, folder, case_id="0" * 16, provenance={})

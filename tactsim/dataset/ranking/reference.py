@@ -29,11 +29,13 @@ class PlainGrasp:
     closings : (n,) ascending in m, the first 0
     forces : (n, jaw, row, column) in N
     readings : of its last step, with layout, block and middle
+    scene : the block between the jaws
     """
 
     closings: Array
     forces: Array
     readings: Readings
+    scene: GraspScene
 
     @classmethod
     def of_results(cls, folders: Sequence[str]) -> PlainGrasp:
@@ -70,7 +72,7 @@ class PlainGrasp:
                 "several steps (time: {steps: 12}), or several results"
             )
         begun = np.concatenate([[0.0], closings]), np.concatenate([np.zeros_like(forces[:1]), forces])
-        return cls(*begun, readings[-1])
+        return cls(*begun, readings[-1], results[-1].scene_as(GraspScene))
 
     def at(self, closing: Array | float) -> Array:
         """Forces (..., jaw, row, column) in N at closings in m, by monotone cubic interpolation.

@@ -22,7 +22,8 @@ from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.experiments.localization.source import SAME_CLOSING
+from tactsim.experiments.grasp.scene import untouched_scene
+from tactsim.experiments.localization.source import SAME_CLOSING, jaw_notes
 from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, Source
 from tactsim.interfaces.readings import ROUNDING_NOISE, Readings
 from tactsim.interfaces.seeds import SEED
@@ -153,7 +154,11 @@ def judged_samples(
     check_same(np.asarray(experiment.block.size), experiment.matrix, plain.readings, "the store")
     if of_jaws := [place.key for place in sweep.places if place.path[1:2] in JAW_KEYS]:
         words = "varies among the samples, not in the reference: what it changes in the readings is taken for lumps"
-        warnings.warn(f"{' and '.join(of_jaws)} {words}", stacklevel=2)
+        notes: Sequence[str] = (f"{' and '.join(of_jaws)} {words}",)
+    else:
+        notes = jaw_notes(untouched_scene(experiment), plain.scene)
+    for note in notes:
+        warnings.warn(note, stacklevel=2)
     forces = np.asarray(data[source].values[:, -1], dtype=float)
     truths = _truths(data, float(experiment.block.size[2]))
     plain.at(np.array([truth.closing for truth in truths]))

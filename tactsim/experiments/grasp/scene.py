@@ -10,6 +10,7 @@ from pydantic import AfterValidator
 from tactsim.array import Array
 from tactsim.contact.jaw import Jaw
 from tactsim.errors import StorageError
+from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mesh.any_inclusion import AnyInclusion, inclusion_name
@@ -123,6 +124,22 @@ class GraspScene(Scene):
         """Lower and upper border (n, 2) in mm of every column ("x") or row ("y") of taxels on a jaw, or between both."""
         middle = self.middle if side is None else self.place(side)
         return 1e3 * (self.matrix.borders(along) + middle["xy".index(along)])
+
+
+def untouched_scene(setup: GraspSetup) -> GraspScene:
+    """The scene of a grasp whose jaws touch the block but do not press it."""
+    size, tissue, places = setup.block.size, setup.block.tissue, {}
+    for side, height in zip(JAWS, (size[2], 0.0), strict=True):
+        along, across = getattr(setup, side).middle(size).tolist()
+        places[side] = (along, across, height)
+    return GraspScene(
+        kind="grasp",
+        block_size=size,
+        inclusions=tuple(EmbeddedShape(shape=one.shape, unlike_tissue=one.unlike(tissue)) for one in setup.inclusions),
+        jaws={side: setup.jaw(side) for side in JAWS},
+        jaw_places=places,
+        matrix=setup.matrix,
+    )
 
 
 class MeshReport(FrozenModel):

@@ -16,6 +16,7 @@ from tactsim.experiments.localization.response_store import stored_response
 from tactsim.experiments.localization.scene import ConfusionScene, JudgedGrasp
 from tactsim.experiments.localization.source import (
     folder_words,
+    jaw_notes,
     readings_of,
     reference_notes,
     stored_grasp,
@@ -81,9 +82,11 @@ class Confusion(Experiment):
         """
         plain, counted = stored_grasp(self.reference), _Counted()
         stored = [stored_grasp(folder) for folder in self.grasps]
-        doubts = [*unfinished_notes(plain, self.reference), *reference_notes(plain.scene_as(GraspScene).true_inclusions)]
+        reference = plain.scene_as(GraspScene)
+        doubts = [*unfinished_notes(plain, self.reference), *reference_notes(reference.true_inclusions)]
         for folder, grasp in zip(self.grasps, stored, strict=True):
             doubts += unfinished_notes(grasp, folder)
+            doubts += [f"{folder_words(folder)}: {note}" for note in jaw_notes(grasp.scene_as(GraspScene), reference)]
         readings = self._readings(plain, stored)
         return Course(self._estimated(readings, counted), lambda: self._findings(counted, tuple(dict.fromkeys(doubts))))
 

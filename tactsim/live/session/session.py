@@ -165,7 +165,7 @@ class Session:
             self._playback.begin_anew(recording)
         times = [] if self._chosen.live or recording is None else recording.times.tolist()
         reference = self._content.reference
-        notes = [*scene.notes, *(() if reference is None else reference.notes)]
+        notes = [*scene.notes, *(() if reference is None else reference.notes(scene))]
         state = self._chosen.state() | {"times": times, "live": self._chosen.live, "notes": notes}
         self._thinking.drop_shapes()
         await self._send_text(scene_message(scene, **state))

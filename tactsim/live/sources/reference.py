@@ -13,7 +13,7 @@ from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.deadline import stopped_by
 from tactsim.errors import InputError, OutOfTime
 from tactsim.experiments.localization.response_store import stored_response
-from tactsim.experiments.localization.source import SAME_CLOSING, reference_notes, stored_grasp
+from tactsim.experiments.localization.source import SAME_CLOSING, jaw_notes, reference_notes, stored_grasp
 from tactsim.live.sources.recorded import SOURCES, result_recordings
 from tactsim.live.sources.scene import Frame, PageScene, Recording
 from tactsim.live.sources.watch import Watch
@@ -100,10 +100,10 @@ class Reference:
         """Block and matrices."""
         return self.results[-1].any_recording.scene
 
-    @property
-    def notes(self) -> tuple[str, ...]:
-        """What the user must know about it."""
-        return reference_notes(self.scene.inclusions or ())
+    def notes(self, scene: PageScene) -> tuple[str, ...]:
+        """What the user must know about it beside what is shown; of a real sensor the jaws are not known."""
+        jaws = jaw_notes(scene.grasp, self.scene.grasp) if scene.truth_known else ()
+        return (*reference_notes(self.scene.inclusions or ()), *jaws)
 
     def response(self, closing: float | None, watch: Watch | None = None) -> LumpResponse:
         """The fast forward model of the tissue at a closing in m, by interpolation between those at the ends of the references.
@@ -175,7 +175,7 @@ class Reference:
         if closings[0] > 0:
             closings, forces = np.append(0.0, closings), np.concatenate([np.zeros_like(forces[:1]), forces])
         end = self.results[-1].any_recording.last.readings(self.scene)
-        plain = PlainGrasp(closings, np.where(np.isfinite(forces), forces, 0.0), end)
+        plain = PlainGrasp(closings, np.where(np.isfinite(forces), forces, 0.0), end, self.scene.grasp)
         return Frame(plain.at(frame.closing), np.asarray(valid.all(axis=0)), frame.time, frame.closing, frame.source)
 
     def _check_reach(self, closing: float, most: float) -> None:

@@ -19,9 +19,8 @@ from tactsim.dataset.store.verifying import refuse_holes
 from tactsim.dataset.use.loading import opened, split_names
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.experiments.grasp.scene import EmbeddedShape, GraspScene
+from tactsim.experiments.grasp.scene import untouched_scene
 from tactsim.interfaces.both_jaws import TAXEL_FORCE
-from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.live.sources.recorded import SOURCES, checked_validity, source_noise
 from tactsim.live.sources.scene import PageScene, Recording
 
@@ -158,7 +157,7 @@ class Samples:
         experiment, same = self._experiment(number, status)
         if not same:
             notes += (OTHER_CASE,)
-        return PageScene(title, _untouched(experiment), truth_known=same, notes=notes)
+        return PageScene(title, untouched_scene(experiment), truth_known=same, notes=notes)
 
     def _experiment(self, number: int, status: int) -> tuple[Grasp, bool]:
         """What was computed, drawn again: it depends on the sweep and the number only; and whether it is the same case still."""
@@ -168,20 +167,3 @@ class Samples:
             raise StorageError(f"sample {number} of {self.place.name} has no case of a grasp: {drawn.refusal or 'another kind'}")
         stored = str(self.data["case_id"].values[number])
         return drawn.case.experiment, status == PENDING or not stored or stored == drawn.case.case_id
-
-
-def _untouched(experiment: Grasp) -> GraspScene:
-    """The scene of a grasp whose jaws touch the block but do not press it."""
-    size, places = experiment.block.size, {}
-    for side, height in zip(JAWS, (size[2], 0.0), strict=True):
-        along, across = getattr(experiment, side).middle(size).tolist()
-        places[side] = (along, across, height)
-    tissue = experiment.block.tissue
-    return GraspScene(
-        kind=experiment.kind,
-        block_size=experiment.block.size,
-        inclusions=tuple(EmbeddedShape(shape=one.shape, unlike_tissue=one.unlike(tissue)) for one in experiment.inclusions),
-        jaws={side: experiment.jaw(side) for side in JAWS},
-        jaw_places=places,
-        matrix=experiment.matrix,
-    )

@@ -89,6 +89,12 @@ def test_jaws_that_vary_among_the_samples_are_warned_of(tmp_path: Path, plain: s
         judged_samples(place, [plain], source="taxel_force")
 
 
+def test_jaws_unlike_those_of_the_reference_are_named(tmp_path: Path, plain: str) -> None:
+    leaning = TEXT.replace("  matrix:", "  lower: {tilt_y: 2 deg}\n  matrix:", 1)
+    with pytest.warns(UserWarning, match=r"^tilt_y of the lower jaw is 2°, in the reference 0°: what this changes"):
+        judged_samples(made_store(tmp_path, response(), text=leaning), [plain], source="taxel_force")
+
+
 def test_the_noise_of_readings_is_as_large_as_stated() -> None:
     samples = made_samples(60, response())
     for multiple in (1.0, 4.0):

@@ -96,11 +96,26 @@ def test_a_taxel_is_saturated_while_its_samples_are(tmp_path: Path) -> None:
     assert np.argwhere(~before).tolist() == [[0, 1, 1]]
 
 
+def reference_notes_of(folder: Path, shown: Path | None = None) -> tuple[str, ...]:
+    """What is said of a reference beside a grasp, by default itself."""
+    scene = result_recordings(shown or folder)["taxel_force"].scene
+    return Reference.open([str(folder)]).notes(scene)
+
+
+def test_other_jaws_of_the_reference_are_named_where_they_are_known(tmp_path: Path) -> None:
+    folder, shown = grasp_folder(tmp_path / "a"), grasp_folder(tmp_path / "b")
+    change(shown, ("scene", "jaws", "upper", "tilt_x"), 0.05)
+    (note,) = (note for note in reference_notes_of(folder, shown) if "jaw" in note)
+    assert note.startswith("tilt_x of the upper jaw is 2.8648°, in the reference 0°")
+    sensor = replace(result_recordings(shown)["taxel_force"].scene, truth_known=False)
+    assert not any("jaw" in note for note in Reference.open([str(folder)]).notes(sensor))
+
+
 def test_an_inclusion_of_the_tissue_itself_is_no_inclusion(tmp_path: Path) -> None:
     folder = change(grasp_folder(tmp_path / "a"), ("scene", "inclusions", 0, "unlike_tissue"), False)
     assert result_recordings(folder)["taxel_force"].scene.inclusions == ()
-    assert Reference.open([str(folder)]).notes == ()
-    (note,) = Reference.open([str(grasp_folder(tmp_path / "b"))]).notes
+    assert reference_notes_of(folder) == ()
+    (note,) = reference_notes_of(grasp_folder(tmp_path / "b"))
     assert note.startswith("the reference holds an inclusion of another material")
 
 

@@ -19,12 +19,12 @@ SPHERE = Sphere(center=(20e-3, 20e-3, 12e-3), radius=5e-3)
 LUMP = PLAIN + np.outer([1.0, 0.5], np.eye(9)[4]).reshape(2, 3, 3)
 
 
-def stored(folder, forces, inclusions, status=Status.CONVERGED):
+def stored(folder, forces, inclusions, status=Status.CONVERGED, **fields):
     layout = TaxelLayout()
     quantities = {"displacement": Quantity(1e-3, "m", "")}
     for jaw, side in enumerate(JAWS):
         quantities[f"taxel_force_{side}"] = Quantity(forces[jaw].tolist(), "N", "")
-    scene = grasp_scene([40e-3, 40e-3, 20e-3], layout, inclusions, width=40e-3, depth=40e-3)
+    scene = grasp_scene([40e-3, 40e-3, 20e-3], layout, inclusions, **{"width": 40e-3, "depth": 40e-3} | fields)
     step = StepRecord(1, 3, 0.0, {"displacement": 1e-3})
     result = Result("grasp", status, "by the user", quantities, steps=(step,), units={"displacement": "m"}, scene=scene)
     return str(write_result(result, folder, case_id="0" * 16, provenance={}))
@@ -44,6 +44,13 @@ def run(folders, *names, **changes):
     given = {"noise": 1e-3, "draws": 3, "estimator": ThesisEstimator(background="reference")} | changes
     experiment = Confusion(grasps=tuple(folders[name] for name in names), **({"reference": folders["plain"]} | given))
     return experiment.run()
+
+
+def test_jaws_unlike_those_of_the_reference_are_named(folders, tmp_path):
+    folders["leaning"] = stored(tmp_path / "leaning", LUMP, (SPHERE,), tilt_x=0.05)
+    notes = run(folders, "lump", "leaning").warnings
+    assert sum("leaning: tilt_x of the upper jaw is 2.8648°, in the reference 0°" in note for note in notes) == 1
+    assert not any("lump: " in note for note in notes)
 
 
 def test_classes_are_counted(folders):
