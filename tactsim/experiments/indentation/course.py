@@ -49,7 +49,7 @@ AT_FIRST = 0.1
 """Stiffness of the contact of tissue that flows at the beginning, over that of the tissue at once.
 
 Why: a contact as stiff as the tissue is at once meets each further point of the surface with a jolt. With a tenth, random
-indentations of atrial tissue with friction took a third to all of the time, and some that had given up came to their end. With a
+indentations of atrial tissue with friction took a third to all of the time, an annulus 527 linear systems instead of 1216. With a
 thousandth they were faster still, but penetration made the beginning of a slow ramp 4 % softer than the closed form."""
 TOUCH = 1e-3
 """First guess of a displacement in penetration tolerances, so that something touches."""
