@@ -42,7 +42,7 @@ nitpick_ignore_regex = [
     ("py:(class|obj)", r"(pydantic_core|warnings|multiprocessing|math)\..*"),
     ("py:(class|obj|exc)", r"(?:[A-Z]\w*|_\w+|'\w+'|[\d.e+-]+|Annotated\[.*|[\w\[]*\[str)$"),
     # Variables of types, and what is private.
-    ("py:(class|obj)", r"tactsim\..*\.(State|Now|Iterate|Function|Made|Model|Key|AnyScene|Number|_\w+|<locals>.*)$"),
+    ("py:(class|obj)", r"tactsim\..*\.(State|Now|Iterate|Function|Made|Kept|Model|Key|AnyScene|Number|_\w+|<locals>.*)$"),
 ]
 suppress_warnings = ["ref.python"]  # a word of a docstring that several classes have as an attribute
 

@@ -61,8 +61,10 @@ class FixedParts:
         """The distribution that a mapping of one key may have been meant as."""
         written = value_at(self.document, place)
         key = next(iter(written)) if isinstance(written, dict) and len(written) == 1 else ""
-        if not key or (meant := suggestion(str(key), READERS)):
-            return meant if key else ""
+        if not key:
+            return ""
+        if meant := suggestion(str(key), READERS):
+            return meant
         return f", or a distribution: {', '.join(READERS)}" if isinstance(written[key], list) else ""
 
 
