@@ -8,14 +8,14 @@ from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from tactsim.case.loading import SWEEP_SCHEMA
+from tactsim.case.loading import SWEEP_SCHEMA, SWEEP_SECTION
 from tactsim.case.overrides import set_value
 from tactsim.case.writing import case_document
 from tactsim.case.yaml_reading import Document, YamlProblems
 from tactsim.dataset.running.executors import Executor, LocalWorkers
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.running.run import SweepRun, Tally
-from tactsim.dataset.sampling.sweep import SECTION, Sweep, sweep_of_document
+from tactsim.dataset.sampling.sweep import Sweep, sweep_of_document
 from tactsim.dataset.store.files import FIGURES
 from tactsim.dataset.use.card import adopt_earlier_files, write_card
 from tactsim.errors import CaseError, InputError, shown
@@ -124,7 +124,7 @@ def _sweep_of(variation: Variation, title: str, settings: dict[str, Any]) -> Swe
             set_value(document, ["experiment", *keys], _with_units(plain(distribution), variation.experiment, keys))
     except YamlProblems as error:
         raise CaseError(f"vary: {error}") from None
-    document.value[SECTION] = settings
+    document.value[SWEEP_SECTION] = settings
     foreign = kinds_outside("tactsim")
     for kind in _kinds_in(document.value):
         if kind in foreign:

@@ -9,10 +9,9 @@ from typing import Any
 from pydantic import TypeAdapter
 
 from tactsim.case.json_schema import DRAFT, case_json_schema, described
-from tactsim.case.loading import SWEEP_SCHEMA
+from tactsim.case.loading import SWEEP_SCHEMA, SWEEP_SECTION
 from tactsim.case.model import Output
 from tactsim.dataset.sampling.settings import SweepSettings
-from tactsim.dataset.sampling.sweep import SECTION
 from tactsim.interfaces.distributions import MOST_OPTIONS
 from tactsim.units import Length
 
@@ -39,7 +38,7 @@ def sweep_json_schema() -> Fragment:
         "title": case["properties"]["title"],
         "experiment": _inner(case["properties"]["experiment"], "#/properties/experiment"),
         "output": case["properties"]["output"],
-        SECTION: settings,
+        SWEEP_SECTION: settings,
     }
     whole = case | {
         "$schema": DRAFT,
@@ -47,7 +46,7 @@ def sweep_json_schema() -> Fragment:
         "description": "A case in which values of the experiment vary.",
         "$defs": definitions,
     }
-    return whole | {"properties": properties, "required": [*case["required"], SECTION]}
+    return whole | {"properties": properties, "required": [*case["required"], SWEEP_SECTION]}
 
 
 def _distributions(kind: str, item: Fragment) -> Fragment:

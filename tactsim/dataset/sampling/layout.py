@@ -9,12 +9,13 @@ from typing import Any
 
 import numpy as np
 
+from tactsim.case.loading import SWEEP_SECTION
 from tactsim.case.model import Case
 from tactsim.dataset.cost import COST
 from tactsim.dataset.sampling.drawing import drawn_specimen, fault_of
 from tactsim.dataset.sampling.settings import Condition
 from tactsim.dataset.sampling.suitable import check_suitable
-from tactsim.dataset.sampling.sweep import SECTION, Sweep, is_distribution
+from tactsim.dataset.sampling.sweep import Sweep, is_distribution
 from tactsim.dataset.store.arrays import index_variables
 from tactsim.errors import CaseError, suggestion
 from tactsim.experiments.recording import recorder_for
@@ -83,7 +84,7 @@ def _check_times(sweep: Sweep, recorder: Recorder, experiment: Any) -> None:
     if steps is not None and steps.longest > (between := steps.end / sweep.settings.times) * (1 + ROUND_OFF):
         apart, computed = (format_quantity(length, steps.unit) for length in (between, steps.longest))
         raise sweep.error(
-            (SECTION, "times"),
+            (SWEEP_SECTION, "times"),
             f"{sweep.settings.times}: stored times are {apart} apart, but forces are computed every {computed}, and would lie on "
             f"straight lines in between; take fewer times, or more steps, such as experiment.{steps.shorter}",
         )
@@ -173,7 +174,7 @@ def _check_splits(sweep: Sweep, labels: list[Variable]) -> None:
     known = {variable.name: variable for variable in labels}
     for split, conditions in sweep.settings.splits.out_of_distribution.items():
         for name, condition in conditions.items():
-            place = (SECTION, "splits", "out_of_distribution", split, name)
+            place = (SWEEP_SECTION, "splits", "out_of_distribution", split, name)
             if name not in known:
                 raise sweep.error(place, f"unknown label{suggestion(name, known)}; labels: {', '.join(known) or 'none'}")
             along = [dimension for dimension in known[name].dimensions if dimension != "inclusion"]

@@ -26,8 +26,6 @@ from tactsim.interfaces.distributions import READERS, Distribution, Listed, dist
 from tactsim.refusals import as_written
 from tactsim.schema_of_model import value_at
 
-SECTION = SWEEP_SECTION
-
 
 @dataclass(frozen=True, eq=False)
 class Sweep:
@@ -62,7 +60,9 @@ class Sweep:
         section = self.settings.model_dump(mode="json") | {"samples": self.samples}
         if section["license"] == LICENCE:
             del section["license"]  # so that the text of stores from before there was the key is the same
-        return json.dumps({**self.document.value, "schema": SWEEP_SCHEMA, SECTION: section}, sort_keys=True, allow_nan=False)
+        return json.dumps(
+            {**self.document.value, "schema": SWEEP_SCHEMA, SWEEP_SECTION: section}, sort_keys=True, allow_nan=False
+        )
 
     @property
     def folder(self) -> str | None:
@@ -77,7 +77,7 @@ class Sweep:
         """
         content = deciding(json.loads(self.text))
         if self.extendable:
-            content[SECTION].pop("samples")
+            content[SWEEP_SECTION].pop("samples")
         return hashlib.sha256(json.dumps(content, sort_keys=True).encode()).hexdigest()[:16]
 
     def error(self, path: Path, message: str) -> CaseError:
@@ -96,10 +96,10 @@ class Sweep:
 
 def deciding(content: dict[str, Any]) -> dict[str, Any]:
     """The plain content of a sweep without what makes no other data."""
-    section = content.get(SECTION)
+    section = content.get(SWEEP_SECTION)
     if isinstance(section, dict):
         section = {key: value for key, value in section.items() if key not in (*OF_THE_CARD, "time_limit")}
-    return {key: value for key, value in content.items() if key != "title"} | {SECTION: section}
+    return {key: value for key, value in content.items() if key != "title"} | {SWEEP_SECTION: section}
 
 
 def load_sweep(
@@ -148,7 +148,7 @@ def _sweep(document: Document, where: Where, samples: int | None, checked: bool 
         if value.get("schema") != SWEEP_SCHEMA:
             stated = as_written(value["schema"]) if "schema" in value else "missing"
             raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SWEEP_SCHEMA}'"))
-        settings = _settings(document, value.pop(SECTION, None), units=not checked)
+        settings = _settings(document, value.pop(SWEEP_SECTION, None), units=not checked)
         value["schema"] = CASE_SCHEMA
         places = tuple(places_of(value, ()))
         plain = replace(document, value=value)
@@ -160,13 +160,13 @@ def _sweep(document: Document, where: Where, samples: int | None, checked: bool 
 
 def _settings(document: Document, section: Any, units: bool) -> SweepSettings:
     if not isinstance(section, dict):
-        raise YamlProblems(Problem((SECTION,), 0, "missing; expected a mapping, such as 'sweep: {samples: 1000}'"))
+        raise YamlProblems(Problem((SWEEP_SECTION,), 0, "missing; expected a mapping, such as 'sweep: {samples: 1000}'"))
     try:
         context = {"units": "required"} if units else None
         return SweepSettings.model_validate_json(json.dumps(section), strict=True, context=context)
     except ValidationError as error:
         problems = problems_of(error, Document(section), SweepSettings)
-        raise YamlProblems(*(Problem((SECTION, *p.path), 0, p.message) for p in problems)) from None
+        raise YamlProblems(*(Problem((SWEEP_SECTION, *p.path), 0, p.message) for p in problems)) from None
 
 
 def _sized(document: Document, where: Where, settings: SweepSettings, samples: int | None, places: tuple[Place, ...]) -> Sweep:
@@ -218,7 +218,7 @@ def sizes_of(places: tuple[Place, ...]) -> tuple[int, ...]:
 
 
 def _wrong(key: str, message: str) -> YamlProblems:
-    return YamlProblems(Problem((SECTION, key), 0, message))
+    return YamlProblems(Problem((SWEEP_SECTION, key), 0, message))
 
 
 @dataclass(frozen=True)
