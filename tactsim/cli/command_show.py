@@ -11,6 +11,8 @@ from tactsim.errors import InputError, StorageError, UnknownName
 from tactsim.outside.text import aligned, one_line
 
 if TYPE_CHECKING:
+    from tactsim.case.loading import Place
+    from tactsim.case.yaml_reading import Document
     from tactsim.results import Result
 
 NAME = "show"
@@ -94,15 +96,12 @@ def run(arguments: argparse.Namespace) -> int:
             "RESULT_STORE_OR_CASE is missing; name a folder that tactsim run or sweep wrote, a case, or --web --live SOURCE; "
             "tactsim show --help says more"
         )
-    if (arguments.result / "zarr.json").is_file():
-        show = _show_data_set
-    elif (case := _case_of(arguments.result)) is not None:
+    is_store = (arguments.result / "zarr.json").is_file()
+    if not is_store and (case := _case_of(arguments.result)) is not None:
         return _show_case(case, arguments)
-    else:
-        show = _show_result
     if arguments.set:
         raise InputError(SET_OF_A_CASE)
-    return show(arguments)
+    return _show_data_set(arguments) if is_store else _show_result(arguments)
 
 
 def _case_of(named: Path) -> Path | None:
@@ -136,7 +135,7 @@ def _show_case(path: Path, arguments: argparse.Namespace) -> int:
     save = arguments.save
     form, read = None if save is None else form_of(save), read_document(path, arguments.set, option="--set")
     if str(read[0].value.get("schema")).startswith(SWEEPS):
-        return _show_sweep(path, form, arguments)
+        return _show_sweep(*read, form, arguments)
     case = validated_case(*read)
     with placed(case, *read):
         result = case.at_rest()
@@ -153,16 +152,16 @@ def _show_case(path: Path, arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _show_sweep(path: Path, form: str | None, arguments: argparse.Namespace) -> int:
+def _show_sweep(written: Document, where: Place, form: str | None, arguments: argparse.Namespace) -> int:
     """How many samples a sweep would compute and what varies in them, and a picture of the first at rest."""
     from tactsim.dataset.sampling.layout import first_case, layout_of
-    from tactsim.dataset.sampling.sweep import load_sweep
+    from tactsim.dataset.sampling.sweep import sweep_of_document
     from tactsim.schema_of_model import value_at
 
-    sweep, save = load_sweep(path, tuple(arguments.set), option="--set"), arguments.save
+    sweep, save, stem = sweep_of_document(written, where), arguments.save, arguments.result.stem
     layout = layout_of(sweep)  # refuses what the sweep itself would refuse before its first sample
     case, document = first_case(sweep), sweep.document.value
-    console.out(one_line(document.get("title") or path.stem))
+    console.out(one_line(document.get("title") or stem))
     samples = f"{sweep.samples} samples" + (f", {sweep.per_specimen} of each specimen" if sweep.per_specimen > 1 else "")
     console.out(f"  a sweep of {sweep.kind}: {samples}, design {sweep.settings.design}; nothing is computed")
     drawn = [(one.key.removeprefix("experiment."), _distribution_in_words(value_at(document, one.path))) for one in sweep.places]
@@ -174,7 +173,7 @@ def _show_sweep(path: Path, form: str | None, arguments: argparse.Namespace) -> 
     if save is not None and form is not None:
         _save_main_figure(case.at_rest(), save, form)
     changes = [word for change in arguments.set for word in ("--set", change)]
-    console.out(f"  compute it with: {console.command('sweep', arguments.result, *changes, '--out', f'{path.stem}.zarr')}")
+    console.out(f"  compute it with: {console.command('sweep', arguments.result, *changes, '--out', f'{stem}.zarr')}")
     return 0
 
 

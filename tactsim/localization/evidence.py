@@ -105,9 +105,9 @@ class Change:
 
     def _partners(self, table: _Table, coarse: Candidates) -> list[int]:
         """Bodies of the best pairs, as numbers of the fine candidates, which are few where the coarse ones have no pair."""
-        partners: list[int] = []
-        grids = ((grid, _best_pairs(grid, self)) for grid in (coarse, table.candidates))
-        grid, pairs = next((one for one in grids if one[1]), (coarse, []))
+        partners, grid, pairs = list[int](), coarse, _best_pairs(coarse, self)
+        if not pairs:
+            grid, pairs = table.candidates, _best_pairs(table.candidates, self)
         for _, partner in pairs:
             fine = table.nearest(grid, partner)
             for _ in range(ROUNDS):

@@ -114,19 +114,18 @@ def load_sweep(
     StorageError
         If the file is missing or cannot be read.
     """
-    document, where = read_document(path, overrides, option=option)
-    return _sweep(document, where, samples)
+    return sweep_of_document(*read_document(path, overrides, option=option), samples)
 
 
-def sweep_of_document(document: Document) -> Sweep:
-    """The sweep that a mapping from Python describes.
+def sweep_of_document(document: Document, where: Where = lambda problem: "", samples: int | None = None) -> Sweep:
+    """The sweep that a mapping describes, of Python or of the file that ``where`` names; ``samples`` replaces its own.
 
     Raises
     ------
     CaseError
         With one line for every fault: the key path, the value, and what is allowed.
     """
-    return _sweep(document, lambda problem: "", None)
+    return _sweep(document, where, samples)
 
 
 @lru_cache(maxsize=4)

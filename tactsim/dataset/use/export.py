@@ -198,7 +198,7 @@ def _shards(data: xarray.Dataset, attributes: dict[str, Any], target: Path) -> N
     columns |= {_headed(name, values): _column(name, values, data) for name, values in data.data_vars.items() if values.ndim == 1}
     pyarrow.parquet.write_table(pyarrow.table(columns), target / INDEX)
     for number, part in enumerate(_parts(data)):
-        arrays = {str(name): values.values for name, values in part.data_vars.items() if values.ndim > 1}
+        arrays = {name: part[name].values for name in _arrays(part)}
         np.savez(target / f"shard_{number:05d}.npz", allow_pickle=False, sample=part["sample"].values, **arrays)
     described = {str(name): {"dimensions": list(v.dims), **v.attrs} for name, v in data.data_vars.items()}
     content = {"attributes": attributes, "labels": _labels(data), "variables": described}
