@@ -168,9 +168,11 @@ class History:
         Raises
         ------
         InvalidQuantity
-            If a time is NaN or not a real number.
+            If a time is not a finite real number: a sine has no value at infinity.
         """
         instants = checked_instants(t)
+        if np.isinf(instants).any():
+            raise InvalidQuantity(f"t is {shown(t)}; allowed: finite times in s")
         piece, elapsed = self.located(instants)
         return np.where(instants < 0, 0.0, self.pieces.taken(piece).at(elapsed).reshape(instants.shape))
 

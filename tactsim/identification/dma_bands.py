@@ -99,7 +99,9 @@ def genetic_band(
 
 
 def _band(frequencies: Array, centre: Array, half: Array, confidence: float, simultaneous: bool) -> ComplianceBand:
-    return ComplianceBand(np.array(frequencies), centre, centre * np.exp(-half), centre * np.exp(half), confidence, simultaneous)
+    with np.errstate(over="ignore"):  # data that leave nothing to judge their noise by have an infinite band
+        lower, upper = centre * np.exp(-half), centre * np.exp(half)
+    return ComplianceBand(np.array(frequencies), centre, lower, upper, confidence, simultaneous)
 
 
 def _half_width(deviations: Array, confidence: float, simultaneous: bool) -> Array:

@@ -60,8 +60,9 @@ class DmaFit:
 def fit_least_squares(data: DmaData, units: int = 8, *, weighting: str = "noise") -> DmaFit:
     r"""Constants of ``units`` Kelvin units that make the weighted sum of squares least.
 
-    The non-negative spectrum on a grid of times is the one minimum of a convex problem, and has few units. These are refined,
-    divided until there are ``units`` of them, and refined again under a weak prior:
+    The non-negative spectrum on a grid of times is the one minimum of a convex problem, and has few units. Where it has more than
+    ``units``, those that the others make up for best are left out. The rest is refined, divided until there are ``units`` of
+    them, and refined again under a weak prior:
 
     .. math:: \min_p \sum_k \left(\frac{D_k(p) - D_k}{s_k}\right)^2 + \frac{|p - p_0|^2}{(\ln 10)^2}
 
@@ -89,22 +90,30 @@ def fit_least_squares(data: DmaData, units: int = 8, *, weighting: str = "noise"
     grid = retardation_grid(data.frequencies)
     basis = retardation_basis(data.frequencies, grid)
     spectrum = nonnegative_spectrum(basis, data.parts.ravel(), rough.ravel())
-    few, spent = _refined(_merged(spectrum, grid, data, units), data, rough)
+    few, spent = _refined(_at_most(units, spectrum, grid, data, rough), data, rough)
     fitted, more = _until_the_noise_is_reached(_divided(few, units), data, rough, known)
     if weighting == "noise" and np.count_nonzero(spectrum[1:]) <= units:
         _check_minimum(fitted, data, rough, (basis @ spectrum).reshape(data.parts.shape))
     return DmaFit("least_squares", _sorted(fitted), data, float(objective(fitted, data)), spent + more)
 
 
-def _merged(spectrum: Array, grid: Array, data: DmaData, units: int) -> Array:
-    """Log constants of the spectrum with neighbours on the grid made one unit, and the nearest pairs until ``units`` are left."""
-    strengths, times = units_of(spectrum, grid)
-    if not times:
+def _at_most(units: int, spectrum: Array, grid: Array, data: DmaData, deviation: Array) -> Array:
+    """Log constants of the spectrum with neighbours on the grid made one unit, and with ``units`` of them at most.
+
+    Units are left out one by one, each time the one that the others make up for best. The nearest two are not made one: they may
+    be those of the tissue, beside faint ones far out that only follow the noise.
+    """
+    strengths, times = map(np.array, units_of(spectrum, grid))
+    while times.size > units:
+        fewer = [np.delete(times, k) for k in range(times.size)]
+        bases = [retardation_basis(data.frequencies, np.exp(few)) for few in fewer]
+        spectra = [nonnegative_spectrum(basis, data.parts.ravel(), deviation.ravel()) for basis in bases]
+        misfits = [(basis @ one - data.parts.ravel()) / deviation.ravel() for basis, one in zip(bases, spectra, strict=True)]
+        best = int(np.argmin([misfit @ misfit for misfit in misfits]))
+        spectrum, kept = spectra[best], spectra[best][1:] > 0
+        strengths, times = spectrum[1:][kept], fewer[best][kept]
+    if not times.size:
         raise ConvergenceError("retardation spectrum: the data have no unit with a retardation time")
-    while len(times) > units:
-        k = int(np.argmin(np.diff(times)))
-        times[k : k + 2] = [float(np.average(times[k : k + 2], weights=strengths[k : k + 2]))]
-        strengths[k : k + 2] = [sum(strengths[k : k + 2])]
     spring = max(spectrum[0], SMALLEST_SPRING * data.parts[0].min())
     return np.concatenate([[-np.log(spring)], -np.log(strengths), times])
 

@@ -107,9 +107,26 @@ def estimated_noise(data: DmaData) -> Array:
 
     Source: Meyer & Woodroofe 2000, doi:10.1214/aos/1015956708.
     """
+    basis, spectrum = _best_spectrum(data)
+    return np.full(data.parts.shape, residual_noise(basis, data.parts.ravel(), spectrum))
+
+
+def noise_is_known(data: DmaData) -> bool:
+    """Whether the data give their noise, or have more numbers than the best spectrum has positive compliances to estimate it by.
+
+    Raises
+    ------
+    ConvergenceError
+        If the active set of the spectrum does not settle.
+    """
+    return data.relative_noise is not None or int((_best_spectrum(data)[1] > 0).sum()) < data.parts.size
+
+
+def _best_spectrum(data: DmaData) -> tuple[Array, Array]:
+    """Basis (2 n, m) and spectrum (m,) in 1/Pa of least squared relative errors."""
     compliance = data.parts.ravel()
     basis = retardation_basis(data.frequencies, retardation_grid(data.frequencies))
-    return np.full(data.parts.shape, residual_noise(basis, compliance, nonnegative_spectrum(basis, compliance, compliance)))
+    return basis, nonnegative_spectrum(basis, compliance, compliance)
 
 
 def residual_noise(basis: Array, compliance: Array, spectrum: Array) -> float:

@@ -17,6 +17,8 @@ from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
 from tactsim.sensors.films.film_equations import creep_strain
 
 FEWEST_SAMPLES = 6
+SMALLEST_START = 1e-3
+"""Part of the largest strain that the search starts from at once, if the first sample is smaller."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,7 +77,8 @@ def fit_creep(test: CreepTest, area: float, *, confidence: float = 0.95) -> Cree
     if not area > 0:
         raise InvalidQuantity(f"creep on an area of {area:g} m^2; allowed: > 0")
     stress = test.force / area
-    end, first = float(test.time[-1]), max(float(test.strain[0]), 1e-12)
+    # A first sample from before the load rose is no start for E0: the search does not come back from so stiff a spring.
+    end, first = float(test.time[-1]), max(float(test.strain[0]), SMALLEST_START * float(test.strain.max()))
     late = max(float(test.strain[-1] - first), 1e-3 * first)
 
     def strain(t: Array, *logarithms: float) -> Array:

@@ -16,7 +16,7 @@ DETERMINED = 0.25
 AT_REST = ("c10", "c01")
 """Twice the sum of these is the shear modulus at rest."""
 ROUND_OFF = 1e-9
-"""Part of an interval below which one of its ends is 0."""
+"""Part of an interval below which one of its ends is 0, and of a stress below which a residual is no error of the form."""
 LARGEST_STRAIN = 10.0
 """Assumption: no rubber or tissue is stretched further, by 1000 %."""
 BARELY_STRETCHED = 0.05
@@ -45,7 +45,7 @@ class UniaxialCertainty:
                 f"the curve does not determine {' and '.join(self.undetermined)} one by one, only the stress where it was "
                 f"measured{modulus}: use a form of fewer constants or measure another deformation"
             )
-        if self.noise.in_runs:
+        if self.noise.in_runs and largest_error > ROUND_OFF:
             warnings.append(
                 f"the residuals come in runs of one sign: the form does not follow the curve, which it misses by up to "
                 f"{100 * largest_error:.1f} %; the intervals are wide for it and hold for this form only: take fewer strains"
@@ -108,10 +108,14 @@ def large_strains(curve: UniaxialCurve) -> tuple[str, ...]:
 
 
 def one_sided(curve: UniaxialCurve) -> tuple[str, ...]:
-    """What a curve of one sign leaves open, in words."""
-    if curve.stretch.max() < 1 + BARELY_STRETCHED:
+    """What a curve of one sign, or of small strains alone, leaves open, in words."""
+    tension, compression = float(curve.stretch.max()) - 1, 1 - float(curve.stretch.min())
+    if max(tension, compression) < BARELY_STRETCHED:
+        largest = f"no strain of the curve exceeds {100 * max(tension, compression):.2g} %"
+        return (f"{largest}, which says nothing of larger ones; a threshold pressure depends on them",)
+    if tension < BARELY_STRETCHED:
         return ("the curve is compression alone, which says nothing of tension; a threshold pressure depends on it",)
-    if curve.stretch.min() > 1 - BARELY_STRETCHED:
+    if compression < BARELY_STRETCHED:
         return ("the curve is tension alone, which says little of compression; what lies under a sensor is compressed",)
     return ()
 

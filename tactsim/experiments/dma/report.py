@@ -15,7 +15,7 @@ from tactsim.identification.dma_bands import ComplianceBand
 from tactsim.identification.dma_data import PARTS, DmaData, parts_of
 from tactsim.identification.dma_determined import Determination
 from tactsim.identification.dma_least_squares import DmaFit, fit_least_squares
-from tactsim.identification.dma_spectrum import relative_noise
+from tactsim.identification.dma_spectrum import noise_is_known, relative_noise
 from tactsim.interfaces.run import Findings
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import StepRecord
@@ -170,6 +170,15 @@ class DmaReport:
         """Squared errors of a fit over the variance of the noise, summed."""
         return float(((self._relative_errors(fit) / relative_noise(self.data)) ** 2).sum())
 
+    def _noise_unknown(self) -> list[str]:
+        """A warning if the data say too little of their own noise, of which bands and standard errors are made."""
+        if noise_is_known(self.data) and all(np.isfinite(finding.band.upper).all() for finding in self.fits.values()):
+            return []
+        return [
+            f"{self.data.parts.size} numbers leave too little to estimate their noise by: neither the bands nor what is said of "
+            "the constants holds; measure at more frequencies, or state the noise as data.noise"
+        ]
+
     def _misfit(self) -> list[str]:
         """A warning if the units leave more than the noise, whose sum of squares follows a chi-square distribution with at
         most as many degrees of freedom as there are numbers.
@@ -188,7 +197,7 @@ class DmaReport:
 
     def _warnings(self, quantities: dict[str, Quantity]) -> list[str]:
         determinations = [finding.determination for finding in list(self.fits.values())[:1]]
-        warnings = self._misfit() if self.fits else []
+        warnings = [*self._noise_unknown(), *self._misfit()] if self.fits else []
         warnings += [one.statement() for one in determinations if not one.determined.all()]
         estimates = () if self.analysis is None else self.analysis.estimates
         coloured = [f"{estimate.frequency:g}" for estimate in estimates if not estimate.has_white_residuals]

@@ -144,7 +144,7 @@ class FilmCreep(Experiment):
     def _warnings(self, fits: list[CreepFit]) -> tuple[str, ...]:
         return tuple(
             f"the creep at {fit.force:g} N determines {name} only to {100 * width / value:.0f} %; "
-            "record longer or with less noise"
+            "record longer or with less noise, and leave out samples from before the load"
             for fit in fits
             for name, value, width in zip(CREEP_COEFFICIENTS, fit.coefficients, fit.half_widths, strict=True)
             if width > 0.2 * value

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT
 from tactsim.array import Array
 from tactsim.experiments.threshold.contact_curve import Approach, SensorShape
 from tactsim.experiments.threshold.sampling import ApproachSampling, Trials
@@ -185,6 +186,11 @@ class TrialReport:
         if low:
             least, resolved = format_quantity(low[0], "N"), format_quantity(RESOLUTION, "N")
             yield f"the true threshold, {least} at least, is below the resolution of {resolved} that 3.1.2 states (erratum E27)"
+        if self._experiment.source.kind == "closed_form" and self.shape is not None:
+            deepest = max((a.speed * a.touch for a in self._approaches), default=0.0) / self.shape.outer_radius
+            if deepest > SMALL_DISPLACEMENT:
+                limit = f"linear theory is meant for up to {SMALL_DISPLACEMENT:g}"
+                yield f"the threshold lies at a displacement of {deepest:.3g} of the outer radius; {limit}"
         for name, words in (
             ("false_rate", "trigger before the touch: take a higher level or a lower cut-off"),
             ("missed_rate", "never trigger: take a lower level or follow the displacement further"),

@@ -21,12 +21,16 @@ def film_line(film: SensorFilm, forces: tuple[float, float]) -> LinearCalibratio
     Raises
     ------
     InvalidQuantity
-        If the bounds are not 0 <= low < high.
+        If the bounds are not 0 <= low < high, or the film cannot bear such forces.
     """
     if not 0 <= forces[0] < forces[1]:
         raise InvalidQuantity(f"forces of the calibration are {forces} N; allowed: 0 <= low < high")
     applied = np.linspace(*forces, LINE_POINTS)
-    return least_squares_line(applied, read_under(film, applied))
+    try:
+        conductance = read_under(film, applied)
+    except InvalidQuantity as error:
+        raise InvalidQuantity(f"calibration_forces up to {forces[1]:g} N: {error}") from None
+    return least_squares_line(applied, conductance)
 
 
 def read_under(film: SensorFilm, forces: Array, delay: float = READ_AFTER) -> Array:

@@ -66,6 +66,7 @@ def test_sums_keep_every_jump_and_every_frequency():
         (lambda: harmonic(1.0, 0.0), "frequency is 0.0"),
         (lambda: harmonic(1.0, 1.0, start=-1.0), "start is -1.0"),
         (lambda: step(1.0).value(math.nan), "t is nan"),
+        (lambda: step(1.0).value([0.0, math.inf]), "inf.*; allowed: finite times"),
     ],
 )
 def test_impossible_histories_are_refused(build, message):

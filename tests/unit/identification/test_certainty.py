@@ -75,6 +75,15 @@ def test_a_form_that_misses_the_curve_is_said_to():
     assert exact.certainty.intervals["c10"] == pytest.approx((4e3, 4e3), rel=1e-9)
 
 
+@pytest.mark.parametrize("form", ["2-parameter", "stable", "stable-c20-c30"])
+@pytest.mark.parametrize("count", [20, 50, 200])
+def test_round_off_is_no_error_of_the_form(form, count):
+    """Half of all exact curves leave residuals of 1e-16 in runs."""
+    stretch = np.linspace(0.5, 3.0, count)
+    exact = fit_uniaxial(UniaxialCurve(stretch, uniaxial_nominal_stress(TRUE, stretch), "exact"), form)
+    assert exact.warnings == ()
+
+
 def test_as_many_points_as_constants_say_nothing_of_noise():
     stretch = np.array([0.8, 1.2, 1.5])
     fit = fit_uniaxial(UniaxialCurve(stretch, uniaxial_nominal_stress(TRUE, stretch), "three"), "3-parameter")
@@ -91,6 +100,29 @@ def test_a_curve_of_one_side_says_how_far_forms_differ_on_the_other():
     assert "tension alone" in words
     assert "at a stretch of 0.7 the stable fits agree within 0.1 %" in words
     assert spread_of_forms([]) == ()
+
+
+@pytest.mark.parametrize(
+    ("least", "largest", "words", "side"),
+    [
+        (0.98, 1.02, "no strain of the curve exceeds 2 %", "tension"),
+        (1.001, 1.04, "no strain of the curve exceeds 4 %", "tension"),
+        (0.96, 0.999, "no strain of the curve exceeds 4 %", "tension"),
+        (0.8, 1.04, "compression alone", "tension"),
+        (0.96, 1.3, "tension alone", "compression"),
+        (0.9, 1.1, "", ""),
+    ],
+)
+def test_a_curve_of_small_strains_is_not_said_to_be_one_of_a_single_side(least, largest, words, side):
+    stretch = np.linspace(least, largest, 20)
+    curve = UniaxialCurve(stretch, uniaxial_nominal_stress(TRUE, stretch), "small")
+    fits = [fit_uniaxial(curve, form) for form in ("stable", "stable-c20")]
+    warnings, spread = fits[0].warnings, spread_of_forms(fits)
+    assert bool(warnings) == bool(spread) == bool(words)
+    if words:
+        assert words in warnings[-1]
+        assert words in spread[0]
+        assert f"at a stretch of {1.5 if side == 'tension' else 0.7}" in spread[0]
 
 
 @pytest.mark.parametrize("seed", range(1, 50, 7))

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from tactsim.analytic.atrial import table_4_1
+from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.errors import InvalidQuantity, UnknownName
 from tactsim.identification.dma_bands import genetic_band, least_squares_band
 from tactsim.identification.dma_data import DmaData, parts_of, synthetic_dma
@@ -112,6 +113,21 @@ def test_any_number_of_units(units):
     assert fit.constants.moduli.shape == fit.constants.retardation_times.shape == (units,)
     assert (np.diff(fit.constants.retardation_times) >= 0).all()
     assert np.isfinite(fit.constants.logarithms).all()
+
+
+@pytest.mark.parametrize("known", [True, False])
+@pytest.mark.parametrize("seed", [2, 3, 4, 7])
+def test_as_many_units_as_made_the_data_leave_no_more_than_the_noise(seed: int, known: bool) -> None:
+    """The spectrum of noisy data has faint units far out beside the two of the tissue; which of them are kept decides."""
+    true = GeneralizedKelvin(1e-5, [2e-5, 3e-5], [0.02, 0.1])
+    made = synthetic_dma(true, DATA.frequencies, noise=0.02, seed=seed)
+    fit = fit_least_squares(made if known else replace(made, relative_noise=None), 2)
+    spread = 0.02 * made.parts
+    expected, found = (
+        float((((parts - made.parts) / spread) ** 2).sum())
+        for parts in (parts_of(true.complex_compliance(2 * np.pi * made.frequencies)), fit.parts(made.frequencies))
+    )
+    assert found < expected  # a least of the same form; 100 to 300 was left of 6 to 29
 
 
 def test_noise_is_estimated_from_the_residuals():

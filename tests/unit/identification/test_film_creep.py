@@ -26,6 +26,16 @@ def test_the_lines_of_2_3_1_come_back_from_clean_creep():
         assert lines[name].intercept == pytest.approx(true.intercept, rel=1e-6)
 
 
+def test_a_first_sample_before_the_load_leaves_the_least_squares():
+    """A record may begin with a zero from before the load: the coefficients are the best ones for all samples all the same."""
+    test = noisy_creep(0.0)[0]
+    late = CreepTest(test.force, TIMES, np.append(0.0, test.strain[1:]))
+    fit, true = fit_creep(late, AREA), fit_creep(test, AREA)
+    missed_by_true = late.strain - (test.strain - true.residuals)
+    assert (fit.residuals**2).sum() < (missed_by_true**2).sum()
+    assert fit.half_widths[0] > true.half_widths[0]
+
+
 def covered(noise, claimed):
     """Share of 200 seeded tests whose interval, scaled by ``claimed``, holds the true coefficients."""
     true = np.array([getattr(LINGSTAT, name).at(4.0) for name in CREEP_COEFFICIENTS])

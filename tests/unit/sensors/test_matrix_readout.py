@@ -83,3 +83,5 @@ def test_bad_input_is_refused():
         PLAIN.read(np.array([100.0]), np.zeros((1, 2, 32, 32)), AREA)
     with pytest.raises(CaseError, match="must increase"):
         MatrixReadout(calibration_forces=(2.0, 1.0))
+    with pytest.raises(InvalidQuantity, match=r"calibration_forces up to 10000 N: .*allowed: 0 to 100 N"):
+        MatrixReadout(calibration_forces=(0.0, 1e4)).line(AREA)

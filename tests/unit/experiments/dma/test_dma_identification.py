@@ -7,6 +7,7 @@ import pytest
 from drawn import text_of
 
 from tactsim.analytic.atrial import table_4_1
+from tactsim.analytic.generalized_kelvin import GeneralizedKelvin
 from tactsim.case import load_case
 from tactsim.errors import CaseError, ConvergenceError, StorageError
 from tactsim.experiments.dma import dma_identification
@@ -85,6 +86,27 @@ def test_data_from_a_file_with_unknown_noise(tmp_path):
     assert not any("synthetic" in assumption for assumption in outcome.assumptions)
     with pytest.raises(StorageError):
         DmaIdentification(data=MeasuredDma(path=str(tmp_path / "none.csv"))).run()
+
+
+@pytest.mark.parametrize(
+    ("frequencies", "noise", "given", "doubted"),
+    [
+        ((1.0, 6.0, 11.0), 0.02, None, True),  # six positive compliances follow six numbers, noise and all
+        ((1.0, 6.0, 11.0), 0.0, None, True),  # one number is left, but not in every replicate: the band is infinite
+        ((1.0, 6.0, 11.0), 0.02, 0.02, False),
+        ((1.0, 6.0, 11.0, 16.0, 21.0, 26.0, 31.0, 36.0), 0.02, None, False),
+    ],
+)
+def test_data_too_few_to_judge_their_noise_by_are_said_to_be(tmp_path, frequencies, noise, given, doubted):
+    tissue = GeneralizedKelvin(1e-5, [2e-5, 3e-5], [0.02, 0.1])
+    modulus = synthetic_dma(tissue, frequencies, noise=noise, seed=0).modulus
+    table = tmp_path / "few.csv"
+    rows = zip(frequencies, modulus.real.tolist(), modulus.imag.tolist(), strict=True)
+    header = "frequency [Hz], storage modulus [Pa], loss modulus [Pa]"
+    table.write_text("\n".join([header, *(f"{f!r}, {storage!r}, {loss!r}" for f, storage, loss in rows)]))
+    data = MeasuredDma(path=str(table), noise=given)
+    reported = DmaIdentification(data=data, methods=("least_squares",), units=2, replicates=60).run()
+    assert any("too little to estimate their noise by" in warning for warning in reported.warnings) == doubted
 
 
 @pytest.mark.parametrize(

@@ -127,6 +127,15 @@ def test_a_threshold_below_the_resolution_is_reported(usual):
     assert not any("E27" in warning for warning in usual.warnings)
 
 
+def test_a_closed_form_beyond_small_displacements_is_doubted(usual):
+    """Of the curve of a simulation it is not said, however deep it goes."""
+    shallow = LAYER.model_copy(update={"recess": 0.05e-3})
+    doubted = [
+        any("linear theory" in warning for warning in one.warnings) for one in (run(source=LAYER), run(source=shallow), usual)
+    ]
+    assert doubted == [True, False, False]
+
+
 def test_a_viscoelastic_tissue_has_a_threshold_for_each_speed():
     atrial = ClosedFormSource(material=named_material("atrial").material, recess=0.1e-3)
     force = run(source=atrial, speeds=(1e-4, 1e-2)).quantities["threshold_force"].value
