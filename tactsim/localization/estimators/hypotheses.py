@@ -203,7 +203,7 @@ class HypothesesEstimator(Estimator):
         if name == "artery":
             return tube_candidates(response, size, tubes, gap=gap), None
         few = tube_candidates(response, size, tubes[1::2], gap=gap, closed=False, spacing=COARSE_SPACING)
-        lower = few.begins[:, 2]
+        lower = few.geometry.begins[:, 2]
         kept = few.chosen(np.isin(lower, np.unique(lower)[::COARSE]))
         return tube_candidates(response, size, tubes, gap=gap, closed=False, spacing=FINE_SPACING), kept
 
