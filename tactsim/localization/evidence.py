@@ -14,13 +14,15 @@ Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 import scipy
 
 from tactsim.array import Array
 from tactsim.localization.candidates import Candidates
+from tactsim.localization.reference_errors import ReferenceFit, whitened
 
 BEGINNINGS = 4
 """Pairs of the coarse grid from which the search on the fine grid begins."""
@@ -57,6 +59,11 @@ class Change:
 
     values: Array
     contrast_spread: float
+
+    @classmethod
+    def of_fit(cls, fit: ReferenceFit, contrast_spread: float) -> Self:
+        """The change of a fit over the errors of the fit."""
+        return cls(whitened(fit.change, fit.covariance), contrast_spread)
 
     @property
     def ridge(self) -> float:
@@ -131,6 +138,11 @@ class Change:
         )
         swap = crossed < straight
         return np.where(swap, other, first), np.where(swap, first, other)
+
+
+def over_errors(candidates: Candidates, fit: ReferenceFit) -> Candidates:
+    """The candidates with their signals times the factor of a fit, over its errors and dimensionless."""
+    return replace(candidates, signals=whitened(fit.factor * candidates.signals, fit.covariance))
 
 
 def _no_pair() -> Explanation:

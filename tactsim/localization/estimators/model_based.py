@@ -22,7 +22,7 @@ from tactsim.localization.candidates import (
     limits_in,
     radius_steps,
 )
-from tactsim.localization.evidence import Change, nothing
+from tactsim.localization.evidence import Change, nothing, over_errors
 from tactsim.localization.posterior import covariance_about, likely_bodies
 from tactsim.localization.reference_errors import (
     OTHER_TISSUE,
@@ -34,7 +34,6 @@ from tactsim.localization.reference_errors import (
     factor_words,
     fitted,
     stated_factor,
-    whitened,
     without_error,
 )
 from tactsim.localization.region import CellRegion
@@ -159,13 +158,10 @@ class ModelBasedEstimator(Estimator):
             return None
         radii, gap = radius_steps(limits_in(size, self.radii, BALL_RADII), size), gap_in(size, self.gap)
         fine, coarse = (
-            replace(balls, signals=whitened(fit.factor * balls.signals, fit.covariance))
-            for balls in (
-                ball_candidates(response, size, radii, gap=gap, every=EVERY),
-                ball_candidates(response, size, radii[1::2], gap=gap, every=COARSE),
-            )
+            over_errors(ball_candidates(response, size, tried, gap=gap, every=every), fit)
+            for tried, every in ((radii, EVERY), (radii[1::2], COARSE))
         )
-        white = Change(whitened(fit.change, fit.covariance), self.contrast_spread)
+        white = Change.of_fit(fit, self.contrast_spread)
         two = white.double(fine, coarse, np.random.default_rng(SEED))
         if not np.isfinite(two.evidence):
             return None
