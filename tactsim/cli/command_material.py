@@ -85,11 +85,11 @@ def _report(arguments: argparse.Namespace) -> int:
     materials = _materials(arguments.material)
     console.out("\n\n".join(material_report(name, material) for name, material in materials.items()))
     if arguments.save is not None:
-        from tactsim.cli.figures.material_curves import material_figure, png
+        from tactsim.cli.figures.material_curves import encoded, material_figure
 
         for name, material in materials.items():
             place = arguments.save if len(materials) == 1 else _numbered(arguments.save, name)
-            _save(png(material_figure(material, name)), place)
+            _save(encoded(material_figure(material, name)), place)
     return 0
 
 
@@ -136,9 +136,9 @@ def _fit(arguments: argparse.Namespace) -> int:
     for warning in (*left_open, *spread_of_forms(fits)):
         console.note(f"note: {warning}")
     if arguments.save is not None:
-        from tactsim.cli.figures.material_curves import fit_figure, png
+        from tactsim.cli.figures.material_curves import encoded, fit_figure
 
-        _save(png(fit_figure(curve, fits, arguments.fit.stem)), arguments.save)
+        _save(encoded(fit_figure(curve, fits, arguments.fit.stem)), arguments.save)
     return 0
 
 

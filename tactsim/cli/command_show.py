@@ -197,14 +197,12 @@ def _option_in_words(entry: Any) -> str:
 def _show_result(arguments: argparse.Namespace) -> int:
     from tactsim.cli.figures.result_figures import form_of
     from tactsim.cli.report import result_report
-    from tactsim.results import read_result
+    from tactsim.results.reading import read_result, result_folder
 
     form = None if arguments.save is None else form_of(arguments.save)
-    folder = arguments.result.parent if arguments.result.name == "result.json" else arguments.result
+    folder = result_folder(arguments.result)
     stored = read_result(folder, fields=arguments.save is not None)
-    case = stored.provenance.get("case")
-    title = str(case.get("title") or "") if isinstance(case, dict) else ""
-    console.out(result_report(stored.complete, title or folder.resolve().name))
+    console.out(result_report(stored.complete, stored.case_title or folder.resolve().name))
     console.out(f"  case {one_line(stored.case_id)}")
     if form is not None:
         _save_main_figure(stored.result, arguments.save, form)

@@ -22,16 +22,16 @@ from tactsim.dataset.store.opening import ARRAYS, Store
 from tactsim.dataset.store.verifying import SHOWN, ChunkRead, computed_chunks, lost_status, waiting_in_journal
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
-from tactsim.outside.text import one_line
+from tactsim.outside.text import first_names, one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
 COPY = "bring back a copy of {name}/zarr.json, or remove it and go on with --resume, which makes it anew"
 RESUME = "go on with --resume, which computes them again"
+AGAIN = f"{RESUME}, or bring back a copy"
 FORM = ("dtype", "shape")
 """What must be right before samples can be read."""
 MADE_LATER = ("codes", "versions", "schema", ARRAYS)
 """Attributes that do not follow from the sweep."""
-AGAIN = "go on with --resume, which computes them again, or bring back a copy"
 MIRRORED = 2
 """Entries of a dimension that may be mirror images of each other."""
 
@@ -45,8 +45,7 @@ class Finding:
     words: str
 
     def __str__(self) -> str:
-        more = f" and {len(self.samples) - SHOWN} more" if len(self.samples) > SHOWN else ""
-        which = f"; samples {', '.join(map(str, self.samples[:SHOWN]))}{more}" if self.samples else ""
+        which = f"; samples {first_names(self.samples, SHOWN)}" if self.samples else ""
         return f"{self.kind}: {one_line(self.words, 1000)}{which}"
 
 
@@ -98,7 +97,7 @@ def _arrays(store: Store, variables: Iterable[Variable], samples: int) -> Iterat
         if variable.name in store.faults or variable.name in never:
             continue
         if variable.name not in store.described:
-            yield Finding("missing", (), f"the variable {variable.name}; {RESUME}, or bring back a copy")
+            yield Finding("missing", (), f"the variable {variable.name}; {AGAIN}")
             continue
         array = store.described[variable.name]
         if array.shape[0] != samples:
@@ -156,9 +155,8 @@ def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
         )
     foreign = foreign_files(store.path, store.described, names)
     if foreign:
-        more = f" and {len(foreign) - SHOWN} more" if len(foreign) > SHOWN else ""
-        shown = ", ".join(one_line(name, 80) for name in foreign[:SHOWN])
-        yield Finding("foreign", (), f"{shown}{more}: not written by tactsim; keep them elsewhere")
+        shown = first_names([one_line(name, 80) for name in foreign], SHOWN)
+        yield Finding("foreign", (), f"{shown}: not written by tactsim; keep them elsewhere")
     files = OwnFiles(store.path)
     for name in sorted(files.sums()):
         if files.written(name) is None:

@@ -65,8 +65,7 @@ def _number(recorder: Recorder, variable: Variable, result: Result) -> Array:
 def history(result: Result, along: str = "time") -> tuple[Array, dict[str, Array]]:
     """Times (n,) in s, or what else grows, and the history values (n,) by name, with their beginning at 0 if the result begins
     later."""
-    times = np.array([step.values[along] for step in result.steps])
-    columns = {name: np.array([step.values.get(name, np.nan) for step in result.steps]) for name in result.units}
+    times, columns = result.history_values(along), {name: result.history_values(name) for name in result.units}
     if times[0] > 0:
         times = np.append(0.0, times)
         columns = {name: np.append(0.0, column) for name, column in columns.items()}

@@ -12,6 +12,7 @@ from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.solid import check_size
 from tactsim.interfaces.taxel_layout import JAWS as JAWS
 from tactsim.interfaces.taxel_layout import TaxelLayout
+from tactsim.outside.text import first_names
 from tactsim.units import format_quantity
 
 MOST_NAMED = 6
@@ -154,7 +155,7 @@ def shown_change(difference: Array) -> tuple[Array, str]:
 def named_taxels(chosen: Array) -> str:
     """Those of a mask (jaw, row, column), such as "U2,1, L3,3 and 4 more"."""
     names = [taxel_name(*map(int, place)).split(" ")[0] for place in np.argwhere(chosen)]
-    return ", ".join(names[:MOST_NAMED]) + (f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else "")
+    return first_names(names, MOST_NAMED)
 
 
 def silent_words(silent: Array) -> str:

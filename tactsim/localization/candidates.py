@@ -13,6 +13,7 @@ from pydantic import AfterValidator
 from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces.readings import TissueResponse
+from tactsim.localization.bodies import Bodies
 from tactsim.mesh.block import part_of_usual
 from tactsim.units import Length, Positive, format_quantity
 
@@ -43,7 +44,7 @@ RadiusLimits = Annotated[tuple[Positive[Length], Positive[Length]], AfterValidat
 """Pydantic type of the least and the largest radius of what is sought."""
 
 
-def no_body(kind: str) -> InputError:
+def _no_body(kind: str) -> InputError:
     """What is raised if no candidate of a kind is left."""
     return InputError(f"no {kind} of the tabulated radii fits into the block; take smaller radii or a smaller gap")
 
@@ -68,54 +69,18 @@ def radius_steps(limits: tuple[float, float], size: Sequence[float] | Array) -> 
 
 @dataclass(frozen=True, eq=False)
 class Candidates:
-    """Bodies of one kind, all equally likely beforehand.
+    """Bodies of one kind, all equally likely beforehand, and ``signals`` (n, taxels) in N of each for a contrast of one."""
 
-    Attributes
-    ----------
-    kind : "sphere" or "tube"
-    begins, ends : (n, 3) in m, both ends of the centre line of a tube; a ball has its centre as both
-    radii : (n,) in m
-    signals : (n, taxels) in N for a contrast of one
-    """
-
-    kind: str
-    begins: Array
-    ends: Array
-    radii: Array
+    geometry: Bodies
     signals: Array
 
-    @property
-    def centers(self) -> Array:
-        """Centres (n, 3) in m."""
-        return (self.begins + self.ends) / 2
-
     def __len__(self) -> int:
-        return len(self.radii)
+        return len(self.geometry)
 
     def chosen(self, which: Array) -> Candidates:
         """The candidates of a mask (n,) or of indices (m,)."""
-        parts = (self.begins, self.ends, self.radii, self.signals)
-        return Candidates(self.kind, *(part[which] for part in parts))
-
-    def overlaps(self, one: int | Array) -> Array:
-        """Which candidates (n,) overlap the given one and so exclude it; (m, n) for several.
-
-        Balls overlap closer than the sum of their radii, straight level tubes where their centre lines come that close.
-        """
-        of = one if np.ndim(one) == 0 else np.asarray(one)[:, None]
-        reach = self.radii + self.radii[of]
-        if self.kind == "sphere":
-            away = self.begins - self.begins[of]
-            return np.einsum("...k,...k->...", away, away) < reach**2
-        above = np.abs(self.begins[:, 2] - self.begins[of, 2])
-        firsts, lasts = (np.ascontiguousarray(points[:, :2].T) for points in (self.begins, self.ends))
-        return (_plan_distance(firsts, lasts, of) < reach) & (above < reach)
-
-
-def centres_and_room(axes: Sequence[Array], size: Array) -> tuple[Array, Array]:
-    """Centres (n, 3) in m at the places along three axes, and their distance (n,) in m from the nearest face of the block."""
-    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
-    return grid, np.minimum(grid, size - grid).min(axis=1)
+        begins, ends, radii = (part[which] for part in (self.geometry.begins, self.geometry.ends, self.geometry.radii))
+        return Candidates(Bodies(self.geometry.kind, begins, ends, radii), self.signals[which])
 
 
 def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
@@ -128,17 +93,39 @@ def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float
     InputError
         If none of all centres fits, or all radii lie beyond those of the table.
     """
+    return _balls(response, size, _tabulated(response, radii), gap=gap, every=every)
+
+
+def balls_between(response: TissueResponse, size: Array, limits: tuple[float, float], *, gap: float) -> Candidates:
+    """Balls at every centre of the table with every tabulated radius between two limits, inside the block by a gap.
+
+    All lengths are in m, ``size`` (3,) is that of the block.
+
+    Raises
+    ------
+    InputError
+        If none fits, or no radius of the table lies between the limits.
+    """
+    numbers = np.flatnonzero((response.radii >= limits[0] - 1e-12) & (response.radii <= limits[1] + 1e-12))
+    if not len(numbers):
+        raise _untabulated(response, limits)
+    return _balls(response, size, numbers, gap=gap, every=1)
+
+
+def _balls(response: TissueResponse, size: Array, numbers: Array, *, gap: float, every: int) -> Candidates:
+    """Balls of the tabulated radii of these numbers at every ``every``-th centre of the table, inside the block by a gap in m."""
     axes = tuple(axis[every // 2 :: every] for axis in response.axes)
-    grid, room = centres_and_room(axes, size)
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 3)
+    room = np.minimum(grid, size - grid).min(axis=1)
     parts = []
-    for k in _tabulated(response, radii):
+    for k in numbers:
         fits = room >= response.radii[k] + gap
         picked = response.values[k][tuple(slice(every // 2, None, every) for _ in range(3))]
         parts.append((grid[fits], np.full(int(fits.sum()), response.radii[k]), picked.reshape(len(grid), -1)[fits]))
     centers, sizes, signals = (np.concatenate(part) for part in zip(*parts, strict=True))
     if not len(sizes) and every == 1:
-        raise no_body("ball")
-    return Candidates("sphere", centers, centers, sizes, np.ascontiguousarray(signals))
+        raise _no_body("ball")
+    return Candidates(Bodies("sphere", centers, centers, sizes), np.ascontiguousarray(signals))
 
 
 def tube_candidates(
@@ -182,12 +169,12 @@ def tube_candidates(
         placed = [np.column_stack([np.repeat(points[inside], len(level), axis=0), z]) for points in (firsts, lasts)]
         parts.append((*placed, np.full(len(z), radius), signals))
     if not parts:
-        raise no_body("tube")
+        raise _no_body("tube")
     begins, ends, sizes, responses = (np.concatenate(part) for part in zip(*parts, strict=True))
-    return Candidates("tube", begins, ends, sizes, responses)
+    return Candidates(Bodies("tube", begins, ends, sizes), responses)
 
 
-def untabulated(response: TissueResponse, limits: tuple[float, float], factor: float = 1.0) -> InputError:
+def _untabulated(response: TissueResponse, limits: tuple[float, float], factor: float = 1.0) -> InputError:
     """What is raised if the response knows no ball with a radius between limits in m, times ``factor``."""
     known = (float(radius) / factor for radius in response.radii[[0, -1]])
     words = [format_quantity(float(f"{radius:.4g}"), "m") for radius in (*limits, *known)]
@@ -200,7 +187,7 @@ def _tabulated(response: TissueResponse, radii: Sequence[float], factor: float =
     """Numbers of the tabulated radii nearest to those wanted times ``factor``, each once."""
     wanted = factor * np.asarray(radii)
     if wanted.max() < response.radii[0] * (1 - SAME) or wanted.min() > response.radii[-1] * (1 + SAME):
-        raise untabulated(response, (min(radii), max(radii)), factor)
+        raise _untabulated(response, (min(radii), max(radii)), factor)
     return np.unique(np.abs(response.radii[:, None] - wanted).argmin(axis=0))
 
 
@@ -260,30 +247,3 @@ def _line_integrals(response: TissueResponse, firsts: Array, lasts: Array, longe
             columns.append((lower[0] + i) * len(response.axes[1]) + lower[1] + j)
     shape = (len(counts), len(response.axes[0]) * len(response.axes[1]))
     return scipy.sparse.csr_array((np.concatenate(entries), (np.tile(line, 4), np.concatenate(columns))), shape=shape)
-
-
-def _plan_distance(firsts: Array, lasts: Array, one: int | Array) -> Array:
-    """Distance (n,) in m in plan of every segment (2, n) from one of them, (m, n) from several (m, 1): 0 where they cross."""
-    begin, end = firsts[:, one], lasts[:, one]
-    ends = [_from_segment(point, firsts, lasts) for point in (begin, end)]
-    ends += [_from_segment(points, begin, end) for points in (firsts, lasts)]
-    sides = [_side(begin, end, firsts) * _side(begin, end, lasts), _side(firsts, lasts, begin) * _side(firsts, lasts, end)]
-    return np.where((sides[0] < 0) & (sides[1] < 0), 0.0, np.sqrt(np.min(ends, axis=0)))
-
-
-def _from_segment(points: Array, firsts: Array, lasts: Array) -> Array:
-    """Squared distance in m^2."""
-    (along_x, along_y), (x, y) = _between(firsts, lasts), _between(firsts, points)
-    share = np.clip((x * along_x + y * along_y) / (along_x * along_x + along_y * along_y), 0.0, 1.0)
-    x, y = x - share * along_x, y - share * along_y
-    return x * x + y * y
-
-
-def _side(firsts: Array, lasts: Array, points: Array) -> Array:
-    (along_x, along_y), (x, y) = _between(firsts, lasts), _between(firsts, points)
-    return along_x * y - along_y * x
-
-
-def _between(firsts: Array, lasts: Array) -> tuple[Array, Array]:
-    """Both components of the way from the first points to the last."""
-    return lasts[0] - firsts[0], lasts[1] - firsts[1]

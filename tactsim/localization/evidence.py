@@ -14,13 +14,15 @@ Source: D. J. C. MacKay 1992, doi:10.1162/neco.1992.4.3.415.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
 import scipy
 
 from tactsim.array import Array
 from tactsim.localization.candidates import Candidates
+from tactsim.localization.reference_errors import ReferenceFit, whitened
 
 BEGINNINGS = 4
 """Pairs of the coarse grid from which the search on the fine grid begins."""
@@ -57,6 +59,11 @@ class Change:
 
     values: Array
     contrast_spread: float
+
+    @classmethod
+    def of_fit(cls, fit: ReferenceFit, contrast_spread: float) -> Self:
+        """The change of a fit over the errors of the fit."""
+        return cls(whitened(fit.change, fit.covariance), contrast_spread)
 
     @property
     def ridge(self) -> float:
@@ -96,7 +103,7 @@ class Change:
         drawn = generator.choice(len(fine), DRAWS, p=q / q.sum())
         rows = [table.beside(int(i)) for i in drawn]
         logs = np.array([scipy.special.logsumexp(row) for row in rows]) - np.log(q[drawn] / q.sum())
-        pairs = 2 * np.log(len(fine)) + np.log(_apart(fine))
+        pairs = 2 * np.log(len(fine)) + np.log(fine.geometry.apart)
         evidence = float(scipy.special.logsumexp(logs)) - np.log(DRAWS) - pairs
         shares = np.exp(logs - scipy.special.logsumexp(logs))
         first, second = self._paired(fine, drawn, rows, generator)
@@ -122,7 +129,7 @@ class Change:
         for row in rows:
             weights = np.exp(row - row.max())
             second.append(generator.choice(len(fine), DRAWS, p=weights / weights.sum()))
-        other, centers = np.concatenate(second), fine.centers
+        other, centers = np.concatenate(second), fine.geometry.centers
         best = int(np.argmax([row.max() for row in rows]))
         anchors = centers[int(drawn[best])], centers[int(rows[best].argmax())]
         straight, crossed = (
@@ -131,6 +138,11 @@ class Change:
         )
         swap = crossed < straight
         return np.where(swap, other, first), np.where(swap, first, other)
+
+
+def over_errors(candidates: Candidates, fit: ReferenceFit) -> Candidates:
+    """The candidates with their signals times the factor of a fit, over its errors and dimensionless."""
+    return replace(candidates, signals=whitened(fit.factor * candidates.signals, fit.covariance))
 
 
 def _no_pair() -> Explanation:
@@ -156,7 +168,7 @@ class _Table:
         """Log evidence (n,) of every candidate as the second one beside a given first, minus infinity where they overlap."""
         cross = self.candidates.signals @ self.candidates.signals[one]
         evidence = _pair_evidence(self.along, self.along[one], a=self.stiff, b=self.stiff[one], cross=cross, change=self.change)
-        evidence[self.candidates.overlaps(one)] = -np.inf
+        evidence[self.candidates.geometry.overlaps(one)] = -np.inf
         return evidence
 
     def contrasts(self, first: Array, second: Array) -> tuple[tuple[Array, Array], tuple[Array, Array]]:
@@ -171,9 +183,10 @@ class _Table:
 
     def nearest(self, coarse: Candidates, number: int) -> int:
         """The candidate most like one of another grid."""
-        parts = ("begins", "ends")
-        away = sum(((getattr(self.candidates, part) - getattr(coarse, part)[number]) ** 2).sum(axis=1) for part in parts)
-        return int(np.argmin(away + (self.candidates.radii - coarse.radii[number]) ** 2))
+        own, wanted = self.candidates.geometry, coarse.geometry
+        ends = ((own.begins, wanted.begins), (own.ends, wanted.ends))
+        away = sum(((points - point[number]) ** 2).sum(axis=1) for points, point in ends)
+        return int(np.argmin(away + (own.radii - wanted.radii[number]) ** 2))
 
 
 def _pair_evidence(u: Array, w: Array, *, a: Array, b: Array, cross: Array, change: Change) -> Array:
@@ -196,7 +209,7 @@ def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:
         table.along[:, None], table.along, a=table.stiff[:, None], b=table.stiff, cross=cross, change=change
     )
     for some in np.array_split(np.arange(len(coarse)), -(-len(coarse) // ROWS)):
-        evidence[some] = np.where(coarse.overlaps(some), -np.inf, evidence[some])
+        evidence[some] = np.where(coarse.geometry.overlaps(some), -np.inf, evidence[some])
     pairs: list[tuple[int, int]] = []
     for _ in range(BEGINNINGS):
         first, second = (int(k) for k in np.unravel_index(int(evidence.argmax()), evidence.shape))
@@ -206,12 +219,6 @@ def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:
         evidence[[first, second]] = -np.inf
         evidence[:, [first, second]] = -np.inf
     return pairs
-
-
-def _apart(candidates: Candidates) -> float:
-    """Share of the pairs that do not overlap, from evenly spaced first ones: within 1 % for the tubes of a block."""
-    firsts = np.unique(np.linspace(0, len(candidates) - 1, ROWS).round().astype(int))
-    return 1 - float(candidates.overlaps(firsts).mean())
 
 
 def _shares(totals: Array) -> Array:

@@ -29,19 +29,19 @@ def likely_bodies(explanation: Explanation, candidates: Candidates, cell: Array)
 
     ``cell`` (3,) in m is one of the grid of candidates; the region of a centre is that of a normal distribution.
     """
-    bodies = []
+    bodies, geometry = [], candidates.geometry
     for numbers, contrasts, spreads in zip(explanation.bodies, explanation.contrasts, explanation.spreads, strict=True):
-        samples = np.column_stack([candidates.centers[numbers], candidates.radii[numbers], contrasts])
+        samples = np.column_stack([geometry.centers[numbers], geometry.radii[numbers], contrasts])
         mean, line = explanation.weights @ samples, None
-        if candidates.kind == "tube":
+        if geometry.kind == "tube":
             best = int(numbers[explanation.weights.argmax()])
-            mean[:3] = candidates.centers[best]
-            (x0, y0, z0), (x1, y1, z1) = (map(float, end[best]) for end in (candidates.begins, candidates.ends))
+            mean[:3] = geometry.centers[best]
+            (x0, y0, z0), (x1, y1, z1) = (map(float, end[best]) for end in (geometry.begins, geometry.ends))
             line = ((x0, y0, z0), (x1, y1, z1))
         covariance = covariance_about(mean, samples, explanation.weights, spreads=spreads, cell=cell)
         signal = abs(mean[4]) * float(np.linalg.norm(candidates.signals[numbers[explanation.weights.argmax()]]))
         x, y, z, radius, contrast = map(float, mean)
         region = GaussianRegion(mean[:3], covariance[:3, :3])
-        body = EstimatedInclusion(candidates.kind, (x, y, z), radius, contrast, covariance, region, line)
+        body = EstimatedInclusion(geometry.kind, (x, y, z), radius, contrast, covariance, region, line)
         bodies.append((signal, body))
     return tuple(body for _, body in sorted(bodies, key=lambda pair: -pair[0]))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 import scipy
@@ -36,6 +37,19 @@ class CellRegion(Region):
 
     axes: tuple[Array, Array, Array]
     weights: Array
+
+    @classmethod
+    def of_centres(cls, axes: tuple[Array, Array, Array], centres: Array, weights: Array) -> Self:
+        """The region of weighted centres (n, 3) in m, each of which is the middle of a cell; several may be that of one.
+
+        Raises
+        ------
+        InvalidQuantity
+            As on construction.
+        """
+        shape = tuple(map(len, axes))
+        cells = np.ravel_multi_index([np.searchsorted(axis, along) for axis, along in zip(axes, centres.T, strict=True)], shape)
+        return cls(axes, np.bincount(cells, weights, int(np.prod(shape))).reshape(shape))
 
     def __post_init__(self) -> None:
         weights = np.asarray(self.weights, dtype=float)

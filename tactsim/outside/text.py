@@ -28,6 +28,12 @@ def printable(text: str) -> str:
     return text if text.isascii() and text.isprintable() else "".join(_spelled(c, _KEPT) for c in text)
 
 
+def first_names(names: Sequence[object], most: int) -> str:
+    """The first ``most`` names, and how many others there are, such as ``a, b and 4 more``."""
+    more = f" and {len(names) - most} more" if len(names) > most else ""
+    return ", ".join(map(str, names[:most])) + more
+
+
 def aligned(table: Sequence[Sequence[str]], *, left: int = 1, least: Sequence[int] = (), indent: str = "") -> list[str]:
     """Lines of a table for a terminal: the cells of the first ``left`` columns begin in line, those of the others end in line.
 

@@ -118,11 +118,6 @@ def encoded(figure: Figure, form: str = "png") -> bytes:
     return content.getvalue()
 
 
-def png(figure: Figure) -> bytes:
-    """The figure as PNG."""
-    return encoded(figure)
-
-
 @dataclass(frozen=True)
 class Plot:
     """A figure that is drawn when it is wanted, and encoded as it is wanted."""

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path, PurePosixPath
 
 from tactsim.errors import StorageError
-from tactsim.outside.text import one_line
+from tactsim.outside.text import first_names, one_line
 from tactsim.storage.building import (
     begin,
     is_empty,
@@ -251,9 +251,8 @@ def _why_never(path: Path) -> str:
         link = " but a link" if path.is_symlink() else ""
         return f"the output folder {one_line(path)} exists and is not a folder{link}; choose another place"
     strangers = _foreign(path)
-    more = f" and {len(strangers) - 1} more" if len(strangers) > 1 else ""
     advice = "move that away or choose another folder"
-    return f"the output folder {one_line(path)} holds {strangers[0]}{more}; {advice}" if strangers else ""
+    return f"the output folder {one_line(path)} holds {first_names(strangers, 1)}; {advice}" if strangers else ""
 
 
 def _foreign(path: Path) -> list[str]:

@@ -32,6 +32,12 @@ class StoredResult:
     """Whether tactsim wrote fields there that are asked for and gone."""
 
     @property
+    def case_title(self) -> str:
+        """Title of the case, empty without one."""
+        case = self.provenance.get("case")
+        return str(case.get("title") or "") if isinstance(case, dict) else ""
+
+    @property
     def changes(self) -> tuple[str, ...]:
         """A sentence for every changed file, and for fields that are gone."""
         gone = (f"{INDEX}, which tactsim wrote, is gone: the result has no fields",) if self.without_fields else ()
@@ -41,6 +47,11 @@ class StoredResult:
     def complete(self) -> Result:
         """The result with its provenance, as it was when it was written, and a warning of each file that is not or is gone."""
         return replace(self.result, provenance=self.provenance, warnings=(*self.result.warnings, *self.changes))
+
+
+def result_folder(place: Path) -> Path:
+    """The folder of a result that is named by it, or by its result.json."""
+    return place.parent if place.name == RESULT_FILE else place
 
 
 def read_result(directory: str | Path, *, fields: bool = True) -> StoredResult:

@@ -279,4 +279,4 @@ def test_damaged_frames(content: bytes, piece: int) -> None:
     stream.take(b"\n" + LINES)
     assert feed.frame is not None
     assert math.isclose(feed.frame.time or 0.0, 1.0), "the feed goes on after whatever came"
-    assert feed.counts.fault.isprintable()
+    assert feed.state_now()["fault"].isprintable()

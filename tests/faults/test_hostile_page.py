@@ -170,10 +170,10 @@ def test_a_line_without_end_takes_no_memory_and_garbage_is_counted() -> None:
         line(frame_line() | {"taxel_force_upper": [[{"a": []}] * 3] * 3}).strip(),
     ]
     stream.take(b"\n" + b"\n".join(bad) + b"\n")
-    assert feed.counts.malformed == 1 + len(bad)
-    assert feed.counts.fault.isprintable()
+    assert feed.state_now()["malformed"] == 1 + len(bad)
+    assert feed.state_now()["fault"].isprintable()
     stream.take(line(frame_line(2.0)))
-    assert feed.counts.frames == 1
+    assert feed.state_now()["frames"] == 1
 
 
 JSON = st.recursive(

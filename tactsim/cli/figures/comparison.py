@@ -17,6 +17,7 @@ from tactsim.cli.figures.compared_maps import TaxelMaps, draw_maps, taxel_maps
 from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
+from tactsim.outside.text import first_names
 from tactsim.plotting.canvas import despined, encoded, entitle, new_figure, scale_of, styled
 from tactsim.results import Result
 from tactsim.results.compared_numbers import FROM_FIRST, LARGEST, Column
@@ -127,8 +128,7 @@ def _title(comparison: Comparison) -> list[str]:
     if not groups:
         return [" and ".join(comparison.names) if len(comparison.names) == 2 else f"{len(comparison.names)} results of one case"]
     names = [".".join(group) for group in groups.values()]
-    more = f" and {len(names) - MOST_NAMED} more" if len(names) > MOST_NAMED else ""
-    return textwrap.wrap(f"{len(comparison.names)} results that differ in {', '.join(names[:MOST_NAMED])}{more}", TITLE_WIDTH)
+    return textwrap.wrap(f"{len(comparison.names)} results that differ in {first_names(names, MOST_NAMED)}", TITLE_WIDTH)
 
 
 def _shared(first: list[str], second: list[str]) -> list[str]:

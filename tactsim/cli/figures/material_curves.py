@@ -16,7 +16,8 @@ from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import PATHS, nominal_stress
 from tactsim.materials.stability_range import PathStability, stability_range
 from tactsim.materials.viscoelasticity import shear_relaxation
-from tactsim.plotting.canvas import encoded, entitle
+from tactsim.plotting.canvas import encoded as encoded
+from tactsim.plotting.canvas import entitle
 from tactsim.units import format_quantity
 
 SHOWN = (0.5, 2.0)
@@ -85,11 +86,6 @@ def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> 
     lower.set_xlabel("stretch")
     figure.draw_without_rendering()  # settles the ticks, whose width the layout of the saved figure needs
     return figure
-
-
-def png(figure: Figure) -> bytes:
-    """The figure as PNG."""
-    return encoded(figure)
 
 
 def pressure_unit(pressures: Array) -> tuple[str, float]:

@@ -117,15 +117,31 @@ def load_sweep(
     return sweep_of_document(*read_document(path, overrides, option=option), samples)
 
 
-def sweep_of_document(document: Document, where: Where = lambda problem: "", samples: int | None = None) -> Sweep:
+def sweep_of_document(
+    document: Document, where: Where = lambda problem: "", samples: int | None = None, *, checked: bool = False
+) -> Sweep:
     """The sweep that a mapping describes, of Python or of the file that ``where`` names; ``samples`` replaces its own.
+
+    One that is ``checked`` was once read and written by `Sweep.text`: its numbers have no units.
 
     Raises
     ------
     CaseError
         With one line for every fault: the key path, the value, and what is allowed.
     """
-    return _sweep(document, where, samples)
+    value = dict(document.value)
+    try:
+        if value.get("schema") != SWEEP_SCHEMA:
+            stated = as_written(value["schema"]) if "schema" in value else "missing"
+            raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SWEEP_SCHEMA}'"))
+        settings = _settings(document, value.pop(SWEEP_SECTION, None), units=not checked)
+        value["schema"] = CASE_SCHEMA
+        places = tuple(places_of(value, ()))
+        plain = replace(document, value=value)
+        return replace(_sized(plain, where, settings, samples, places), checked=checked)
+    except YamlProblems as error:
+        problems = [Problem(p.path, document.line(p.path), p.message) for p in error.problems]
+        raise case_error(problems, where) from None
 
 
 @lru_cache(maxsize=4)
@@ -138,23 +154,7 @@ def sweep_of_text(text: str, folder: str | None = None) -> Sweep:
         If the text is not that of a sweep.
     """
     document = Document(json.loads(text), folder=None if folder is None else FilePath(folder))
-    return replace(_sweep(document, lambda problem: "the sweep", None, checked=True), checked=True)
-
-
-def _sweep(document: Document, where: Where, samples: int | None, checked: bool = False) -> Sweep:
-    value = dict(document.value)
-    try:
-        if value.get("schema") != SWEEP_SCHEMA:
-            stated = as_written(value["schema"]) if "schema" in value else "missing"
-            raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SWEEP_SCHEMA}'"))
-        settings = _settings(document, value.pop(SWEEP_SECTION, None), units=not checked)
-        value["schema"] = CASE_SCHEMA
-        places = tuple(places_of(value, ()))
-        plain = replace(document, value=value)
-        return _sized(plain, where, settings, samples, places)
-    except YamlProblems as error:
-        problems = [Problem(p.path, document.line(p.path), p.message) for p in error.problems]
-        raise case_error(problems, where) from None
+    return sweep_of_document(document, lambda problem: "the sweep", checked=True)
 
 
 def _settings(document: Document, section: Any, units: bool) -> SweepSettings:

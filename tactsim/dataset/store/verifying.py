@@ -15,11 +15,12 @@ from tactsim.dataset.store.blocks import JOURNAL, NOT_SUMMED, Journal, checksum,
 from tactsim.dataset.store.opening import Store, consolidated_metadata
 from tactsim.errors import StorageError, shown
 from tactsim.interfaces.variable import Variable
-from tactsim.outside.text import one_line
+from tactsim.outside.text import first_names, one_line
 from tactsim.storage.files import naming
 
 CHANGED = "the content is not what was written"
 UNKNOWN = "the status is unknown"
+REMEDY = "bring back a copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
 SHOWN = 10
 """Samples and variables named in one message."""
 MARKED = "code"
@@ -162,10 +163,9 @@ def refuse_holes(store: Store, names: Iterable[str], samples: Array) -> None:
             holed[name] = lost
     if holed:
         numbers = np.unique(np.concatenate(list(holed.values())))
-        more = f" and {len(holed) - SHOWN} more" if len(holed) > SHOWN else ""
         raise StorageError(
-            f"{one_line(store.path)} has holes: {', '.join(list(holed)[:SHOWN])}{more} of {samples_in_words(numbers)} "
-            "are gone; bring back a copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
+            f"{one_line(store.path)} has holes: {first_names(list(holed), SHOWN)} of {samples_in_words(numbers)} "
+            f"are gone; {REMEDY}"
         )
 
 
@@ -218,14 +218,13 @@ def refuse_changed(store: Store, samples: Array) -> None:
     if changed:
         raise StorageError(
             f"{one_line(store.path)} is damaged: the content of {samples_in_words(np.array(changed))} is not what was "
-            "written; bring back a copy, or compute them again with: tactsim sweep CASE --out STORE --resume"
+            f"written; {REMEDY}"
         )
 
 
 def samples_in_words(numbers: Array) -> str:
     """Samples (m,) in words: how many, and the first of them."""
-    more = f" and {len(numbers) - SHOWN} more" if len(numbers) > SHOWN else ""
-    return f"{len(numbers)} samples ({', '.join(map(str, numbers[:SHOWN].tolist()))}{more})"
+    return f"{len(numbers)} samples ({first_names(numbers.tolist(), SHOWN)})"
 
 
 def lost_samples(store: Store, name: str, samples: Array) -> Array:

@@ -57,10 +57,6 @@ class ShapeFinding:
         except InputError:
             return None
 
-    def bottoms_out(self, youngs_modulus: float, scale: DurometerScale) -> float:
-        """1 where, at a Young's modulus in Pa, the indentor goes over its whole travel, else 0."""
-        return float(self.reading(youngs_modulus, scale) == 0.0)
-
 
 class RankingReport:
     """Collects the findings of the shapes and turns them into a result."""
@@ -102,12 +98,13 @@ class RankingReport:
     def _compared(self, finding: ShapeFinding, elastomer: Elastomer) -> dict[str, float | None]:
         """What sensor and durometer say of an elastomer, in SI."""
         by_sensor = finding.modulus_of_threshold(elastomer.threshold_pressure)
+        predicted = finding.reading(by_sensor, self._scale)
         by_durometer = finding.modulus_of_reading(elastomer.durometer, self._scale)
         ratio = None if by_durometer is None else by_durometer / by_sensor
         return {
             "printed_reading": elastomer.durometer,
-            "predicted_reading": finding.reading(by_sensor, self._scale),
-            "bottoms_out": finding.bottoms_out(by_sensor, self._scale),
+            "predicted_reading": predicted,
+            "bottoms_out": float(predicted == 0.0),
             "modulus_of_threshold": by_sensor,
             "modulus_of_reading": by_durometer,
             "modulus_by_hertz": hertz_modulus(elastomer.durometer, self._scale, self._radius),

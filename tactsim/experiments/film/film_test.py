@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -15,7 +14,7 @@ from tactsim.interfaces.film_report import FilmReport
 from tactsim.interfaces.run import Course, Findings
 from tactsim.model import check_increasing
 from tactsim.results.quantity import Quantity
-from tactsim.results.result import StepRecord
+from tactsim.results.result import rows
 from tactsim.sensors.electronics.charge_amplifier import ChargeAmplifier
 from tactsim.sensors.electronics.film_calibration import read_under, slope_and_intercept
 from tactsim.sensors.films.any_film import AnyFilm
@@ -85,16 +84,13 @@ class FilmTest(Experiment):
         signal = self.film.read(times, held)
         shown = {"strain": self.film.strain(times, held), **self._shown(signal)}
         units = {name: self.history_units[name] for name in ("force", "time", *shown)}
-        steps = []
-        for number, (j, i) in enumerate(itertools.product(range(len(forces)), range(len(times))), start=1):
-            reached = (forces[j], times[i], *(values[i, j] for values in shown.values()))
-            steps.append(StepRecord(number, 0, 0.0, dict(zip(units, map(float, reached), strict=True))))
+        by_force = np.repeat(forces, len(times)), np.tile(times, len(forces)), *(values.T.ravel() for values in shown.values())
         read = read_under(self.film, forces, self.reading_time)
         report = self.film.report(forces, read)
         return Course.computed(
             Findings(
                 "all forces held",
-                steps,
+                rows(units, by_force),
                 quantities={**report.constants, **self._readings(times, signal), **self._at_reading(forces, read, report)},
                 assumptions=self.film.assumptions(),
                 warnings=self.film.warnings(float(forces.max())),

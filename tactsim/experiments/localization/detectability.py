@@ -10,6 +10,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from tactsim.analytic.eshelby_ball import eshelby_contrast
+from tactsim.array import Array
 from tactsim.experiments.grasp.setup import Block, GraspSetup
 from tactsim.experiments.localization.detectability_statistics import false_alarm_threshold, smallest_radius, unit_templates
 from tactsim.experiments.localization.response_store import kept_response
@@ -108,11 +109,14 @@ class Detectability(Experiment):
         threshold = false_alarm_threshold(templates, self.false_alarms, draws=self.draws, seed=self.seed)
         contrasts = [float(eshelby_contrast(np.array(ratio))) for ratio in self.shear_ratios]
         deviations = {name: np.sqrt(2) * self._noise(name, count) for name in NOISES}
+        depths = [(self._densities(response, below), self._most(below)) for below in self.depths]
+
+        def over_depth(contrast: float, sigma: float) -> list[float | None]:
+            sought = {"contrast": contrast, "sigma": sigma, "threshold": threshold, "wanted": self.probability}
+            return [smallest_radius(densities, response.radii, most, **sought) for densities, most in depths]
+
         outcome.radii.append(
-            {
-                name: [self._over_depth(response, contrast, sigma, threshold) for contrast in contrasts]
-                for name, sigma in deviations.items()
-            }
+            {name: [over_depth(contrast, sigma) for contrast in contrasts] for name, sigma in deviations.items()}
         )
         outcome.steps.append(StepRecord(number, 0, 0.0, {"taxels": count, "threshold": threshold}))
 
@@ -142,23 +146,19 @@ class Detectability(Experiment):
         setup = self.grasp.model_copy(update={"matrix": self.layout(count)})
         return kept_response(setup, lambda: lump_response(setup, COARSE), how="detectability")
 
-    def _over_depth(self, response: LumpResponse, contrast: float, sigma: float, threshold: float) -> list[float | None]:
-        """Smallest radius at each depth."""
+    def _densities(self, response: LumpResponse, below: float) -> Array:
+        """Lengths (places, R) in N/m^3 of the responses of the tabulated balls at a depth in m, over the volumes of the balls."""
         width, depth, height = self.grasp.block.size
         away = np.array(AWAY) * self.side / min(self.matrices)
-        plan = np.array([(width / 2 + dx, depth / 2 + dy) for dx in away for dy in away])
-        volumes = 4 / 3 * np.pi * response.radii**3
-        smallest = []
-        for below in self.depths:
-            low, high = response.axes[2][[0, -1]]
-            z = float(np.clip(height - below, low, high))
-            centers = np.column_stack([plan, np.full(len(plan), z)])
-            signals = np.stack([response.signal(centers, np.full(len(plan), radius)) for radius in response.radii], axis=1)
-            densities = np.linalg.norm(signals.reshape(len(plan), len(response.radii), -1), axis=2) / volumes
-            most = min(below, height - below) - part_of_usual(self.grasp.block.size) * ROOM
-            sought = {"contrast": contrast, "sigma": sigma, "threshold": threshold, "wanted": self.probability}
-            smallest.append(smallest_radius(densities, response.radii, most, **sought))
-        return smallest
+        z = float(np.clip(height - below, *response.axes[2][[0, -1]]))
+        centers = np.array([(width / 2 + dx, depth / 2 + dy, z) for dx in away for dy in away])
+        signals = np.stack([response.signal(centers, np.full(len(centers), radius)) for radius in response.radii], axis=1)
+        return np.linalg.norm(signals.reshape(*signals.shape[:2], -1), axis=2) / (4 / 3 * np.pi * response.radii**3)
+
+    def _most(self, below: float) -> float:
+        """Largest radius in m that fits at a depth in m."""
+        size = self.grasp.block.size
+        return min(below, size[2] - below) - part_of_usual(size) * ROOM
 
     def _quantities(self, outcome: _Outcome) -> dict[str, Quantity]:
         thresholds = [step.values["threshold"] for step in outcome.steps]

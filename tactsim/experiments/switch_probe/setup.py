@@ -17,7 +17,7 @@ from tactsim.materials import AnyMaterial
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.contact.penetration_bounds import default_penetration
 from tactsim.mechanics.models.specimen import Specimen
-from tactsim.mechanics.paths.loading import DisplacementLoading
+from tactsim.mechanics.paths.loading import close
 from tactsim.mechanics.paths.step_policy import TimeSettings
 from tactsim.model import FrozenModel
 from tactsim.sensors.electronics.calibration import THESIS_LINE, AnyCalibration
@@ -152,12 +152,11 @@ class SwitchProbeSetup(FrozenModel):
 
     def indentation(self, tissue: ProbeTissue, rate: float) -> ProbeIndentation:
         """The finite element simulation of the way in at a rate in m/s, in plane strain."""
-        ramp = {"kind": "ramp", "to": self.depth, "duration": self.duration(rate)}
         return ProbeIndentation(
             specimen=Specimen(material=tissue.material, thickness=self.block.height, radius=self.block.width / 2),
             body=self.probe,
             contact=self.contact,
-            loading=DisplacementLoading.model_validate({"control": "displacement", "pieces": [ramp]}),
+            loading=close(to=self.depth, duration=self.duration(rate)),
             penetration_tolerance=self.penetration,
             mesh=self.mesh,
             time=self.time,

@@ -11,7 +11,7 @@ import numpy as np
 from tactsim.analytic.viscoelastic_annulus import SMALL_DISPLACEMENT
 from tactsim.array import Array
 from tactsim.experiments.threshold.catheter_case import CatheterCase
-from tactsim.experiments.threshold.sampling import Trials
+from tactsim.experiments.threshold.sampling import Trials, valid_deviation, valid_mean
 from tactsim.experiments.threshold.scene import CatheterTipScene
 from tactsim.experiments.threshold.tip_contact import TipContact
 from tactsim.interfaces.readings import RESOLUTION
@@ -69,13 +69,13 @@ class Reading:
 
     @property
     def mean(self) -> float | None:
-        """Mean reported force in N."""
-        return float(self.force[self.valid].mean()) if self.valid.any() else None
+        """Mean reported force in N, None without a valid one."""
+        return valid_mean(self.force, self.valid)
 
     @property
     def deviation(self) -> float | None:
-        """Standard deviation of the reported force in N."""
-        return float(self.force[self.valid].std(ddof=1)) if self.valid.sum() > 1 else None
+        """Standard deviation of the reported force in N, None for fewer than two valid ones."""
+        return valid_deviation(self.force, self.valid)
 
 
 class CatheterReport:

@@ -15,7 +15,7 @@ from tactsim.experiments.threshold.trial_case import TrialCase
 from tactsim.interfaces.readings import RESOLUTION
 from tactsim.interfaces.run import Findings
 from tactsim.results.quantity import Quantity
-from tactsim.results.result import StepRecord
+from tactsim.results.result import StepRecord, rows
 from tactsim.sensors.electronics.low_pass import LowPass
 from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.threshold.threshold_trigger import ThresholdTrigger
@@ -112,7 +112,8 @@ class TrialReport:
         plate, pressed = approach.at(recording.time - begin)
         columns = (recording.time, approach.speed * (recording.time - begin), plate, pressed, large, small, *plain)
         fired = int(state.index[0]) + len(large) - len(armed) if state.triggered[0] else -1
-        self.steps = tuple(_rows(columns, fired))
+        kept = _kept(len(columns[0]), fired)
+        self.steps = rows(SIGNAL_UNITS, [column[kept] for column in columns])
         threshold = approach.threshold_force
         self._capture = ThresholdCapture(
             touch_time=touch,
@@ -205,13 +206,10 @@ class TrialReport:
                 yield f"up to {share} of the trials of {few} of {len(rates)} combinations {words}"
 
 
-def _rows(columns: tuple[Array, ...], trigger: int) -> Iterator[StepRecord]:
-    """Every so many-th sample, the one of the trigger included."""
-    count = len(columns[0])
+def _kept(count: int, trigger: int) -> Array:
+    """Numbers (n,) of every so many-th of ``count`` samples, that of the trigger included if it is not negative."""
     kept = np.arange(0, count, max(1, -(-count // MOST_ROWS)))
-    kept = np.union1d(kept, [trigger]) if trigger >= 0 else kept
-    for number, row in enumerate(np.column_stack(columns)[kept], 1):
-        yield StepRecord(number, 0, 0.0, dict(zip(SIGNAL_UNITS, map(float, row), strict=True)))
+    return np.union1d(kept, [trigger]) if trigger >= 0 else kept
 
 
 def _rate(approach: Approach) -> float:

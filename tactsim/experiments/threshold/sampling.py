@@ -78,15 +78,25 @@ class Trials:
 
     def mean_error(self) -> float | None:
         """Mean error in N of the valid trials, None without any."""
-        return float(self.error[self.valid].mean()) if self.valid.any() else None
+        return valid_mean(self.error, self.valid)
 
     def deviation(self) -> float | None:
         """Standard deviation in N of the valid trials, None for fewer than two."""
-        return float(self.error[self.valid].std(ddof=1)) if self.valid.sum() > 1 else None
+        return valid_deviation(self.error, self.valid)
 
     def mean_delay(self) -> float | None:
         """Mean time in s from touch to trigger of the valid trials, None without any."""
-        return float(self.delay[self.valid].mean()) if self.valid.any() else None
+        return valid_mean(self.delay, self.valid)
+
+
+def valid_mean(values: Array, valid: Array) -> float | None:
+    """Mean of the valid of some values (n,) in their unit, None without any."""
+    return float(values[valid].mean()) if valid.any() else None
+
+
+def valid_deviation(values: Array, valid: Array) -> float | None:
+    """Standard deviation of the valid of some values (n,) in their unit, None for fewer than two."""
+    return float(values[valid].std(ddof=1)) if valid.sum() > 1 else None
 
 
 @dataclass(frozen=True)

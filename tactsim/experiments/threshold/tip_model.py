@@ -22,7 +22,7 @@ from tactsim.experiments.threshold.valve_tissue import BandTissue, ValveSurface
 from tactsim.interfaces.run import returned_by, run_within_another
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.specimen import Specimen
-from tactsim.mechanics.paths.loading import DisplacementLoading
+from tactsim.mechanics.paths.loading import close
 from tactsim.model import FrozenModel
 from tactsim.results.result import Result, Status, StepRecord
 from tactsim.sensors.threshold.sensor_ring import SensorRing
@@ -173,9 +173,7 @@ class FiniteElementTip(FrozenModel):
         common = {"specimen": specimen, "body": body, "contact": Coulomb(friction=self.friction), "recess": ring.recess}
         if tissue.relaxation is None:
             return Indentation(**common, displacement=deepest)
-        ramp = {"kind": "ramp", "to": deepest, "duration": deepest / speed}
-        loading = DisplacementLoading.model_validate({"control": "displacement", "pieces": [ramp]})
-        return TimedIndentation(**common, loading=loading, stop="touch")
+        return TimedIndentation(**common, loading=close(to=deepest, duration=deepest / speed), stop="touch")
 
     def _rise_at_touch(self, ring: SensorRing) -> float:
         """Rise in m of a convex surface into the hole when the face touches it."""

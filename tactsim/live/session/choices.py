@@ -89,11 +89,11 @@ def stored_choice(folder: str | Path) -> Choice | None:
     result = read_result(folder, fields=False).result
     if result.kind != LocalizedGrasp.model_fields["kind"].default:
         return None
+    incomplete = f"{one_line(folder)}/result.json is not a complete result of a localization"
     try:
         scene = result.scene_as(LocalizedGrasp)
     except TactsimError as error:
-        where = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
-        raise StorageError(where) from None
+        raise StorageError(f"{incomplete}: {one_line(error)}") from None
     try:
         inclusions = [_inclusion(one, result.quantities if k == 0 else {}) for k, one in enumerate(scene.estimates)]
         estimate = Estimate(bool(inclusions), tuple(inclusions), result.reason)
@@ -101,8 +101,7 @@ def stored_choice(folder: str | Path) -> Choice | None:
         if has_taxels(result, TAXEL_DIFFERENCE):
             plain = jaws_at_end(result, TAXEL_FORCE) - jaws_at_end(result, TAXEL_DIFFERENCE)
     except DAMAGE as error:
-        where = f"{one_line(folder)}/result.json is not a complete result of a localization: {one_line(error)}"
-        raise StorageError(f"{where}; run it again") from None
+        raise StorageError(f"{incomplete}: {one_line(error)}; run it again") from None
     return Choice(STORED, f"As stored: {scene.estimator.replace('_', ' ')}"[:60], StoredEstimate(estimate), False, plain)
 
 

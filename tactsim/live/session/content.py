@@ -13,6 +13,7 @@ from tactsim.live.sources.recorded import result_recordings
 from tactsim.live.sources.reference import Reference
 from tactsim.live.sources.samples import Samples
 from tactsim.live.sources.scene import Recording
+from tactsim.results.reading import result_folder
 
 LIVE = "live"
 """Name of the feed among the sources of forces."""
@@ -62,9 +63,6 @@ def opened_content(
         return Content({}, None, feed, given, noise, choices)
     if (place / "zarr.json").is_file():
         return Content({}, Samples.open(place), feed, given, noise, choices)
-    stored = stored_choice(_folder(place))
-    return Content(result_recordings(_folder(place)), None, feed, given, noise, choices if stored is None else (stored, *choices))
-
-
-def _folder(place: Path) -> Path:
-    return place.parent if place.name == "result.json" else place
+    folder = result_folder(place)
+    stored = stored_choice(folder)
+    return Content(result_recordings(folder), None, feed, given, noise, choices if stored is None else (stored, *choices))

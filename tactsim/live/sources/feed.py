@@ -6,7 +6,6 @@ import asyncio
 import math
 import time
 from collections import Counter
-from dataclasses import dataclass
 from typing import Any
 
 from tactsim.errors import InputError
@@ -18,15 +17,6 @@ STANDS = 3.0
 """Time in s without a frame after which the picture is no longer that of now."""
 RECENT = 10.0
 """Time in s for which the page shows a line that could not be read; it stays counted."""
-
-
-@dataclass(frozen=True)
-class FeedCounts:
-    """How much came in, and the last fault in words."""
-
-    frames: int = 0
-    malformed: int = 0
-    fault: str = ""
 
 
 class Feed:
@@ -42,11 +32,6 @@ class Feed:
         self._ended = False
         self._last_frame, self._last_fault = -math.inf, -math.inf
         self._listeners: set[asyncio.Event] = set()
-
-    @property
-    def counts(self) -> FeedCounts:
-        """So far."""
-        return FeedCounts(self._count["frame"], self._count["malformed"], self._fault)
 
     def listen(self, event: asyncio.Event) -> None:
         """Sets an event whenever something is new."""

@@ -44,8 +44,7 @@ def result_recordings(folder: str | Path) -> dict[str, Recording]:
             f"{folder} holds the result of {result.kind}, which has no forces of taxels to show; "
             "needed: the result of a grasp, a matrix_readout or a localization, or a data set of grasps"
         )
-    case = stored.provenance.get("case")
-    title = str(result.title or (case.get("title") if isinstance(case, dict) else "") or Path(folder).resolve().name)
+    title = result.title or stored.case_title or Path(folder).resolve().name
     incomplete = f"{one_line(folder)}/result.json is not a complete result of a grasp"
     try:
         grasp = result.scene_as(GraspScene)

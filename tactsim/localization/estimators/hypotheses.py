@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -26,7 +26,7 @@ from tactsim.localization.candidates import (
     radius_steps,
     tube_candidates,
 )
-from tactsim.localization.evidence import Change, Explanation
+from tactsim.localization.evidence import Change, Explanation, over_errors
 from tactsim.localization.posterior import likely_bodies
 from tactsim.localization.reference_errors import (
     OTHER_TISSUE,
@@ -37,7 +37,6 @@ from tactsim.localization.reference_errors import (
     factor_words,
     fitted,
     stated_factor,
-    whitened,
     without_error,
 )
 from tactsim.units import Length, NonNegative, Positive
@@ -137,13 +136,14 @@ class HypothesesEstimator(Estimator):
         """
         if readings.difference is None or readings.response is None:
             raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
+        response, size = readings.response, readings.block_size
         values, priors = readings.difference.ravel(), self._priors(readings)
         if any(without_error(values, errors) for errors in priors):
             return Estimate(False, (), UNCHANGED, 0.0, self._probabilities({"none": 0.0}))
-        balls, *_ = self._bodies("lump", readings.response, readings.block_size)
-        assert balls is not None  # only the few of a pair may be missing
+        balls = ball_candidates(response, size, self._ball_radii(size), gap=gap_in(size, self.gap))
         fits = [fitted(balls.signals, values, errors, self.contrast_spread) for errors in priors]
-        explained = {str(name): self._explained_by(name, fits, readings.response, readings.block_size) for name in self.classes}
+        bodies = {str(name): self._bodies(name, balls, response, size) for name in self.classes}
+        explained = {name: [self._explained(name, fit, *some) for fit in fits] for name, some in bodies.items()}
         densities = {name: [one.log_density for one in each] for name, each in explained.items()}
         densities["none"] = [fit.nothing for fit in fits]
         probabilities = self._probabilities(
@@ -155,7 +155,7 @@ class HypothesesEstimator(Estimator):
             factor = stated_factor(fits[best].bare_factor, self.factor_spread)
             reason = f"no inclusion (probability {probabilities['none']:.3g}){factor_words(factor)}"
             return Estimate(False, (), reason, probability, probabilities, factor)
-        cell = np.array([float(axis[1] - axis[0]) for axis in readings.response.axes])
+        cell = np.array([float(axis[1] - axis[0]) for axis in response.axes])
         factor = stated_factor(fits[best].factor, self.factor_spread)
         chosen = explained[likeliest][best]
         inclusions = likely_bodies(chosen.bodies, chosen.candidates, cell)
@@ -169,43 +169,37 @@ class HypothesesEstimator(Estimator):
         other = ReferenceErrors(plain, readings.noise, self.background_error, self.factor_spread, self.model_error)
         return [same, other] if self.factor_spread > 0 else [same]
 
-    def _explained_by(self, name: str, fits: list[ReferenceFit], response: TissueResponse, size: Array) -> list[ExplainedChange]:
-        """What a class explains of the change of each fit."""
-        bodies = self._bodies(name, response, size)
-        return [self._explained(name, fit, bodies) for fit in fits]
-
-    def _explained(self, name: str, fit: ReferenceFit, bodies: tuple[Candidates, Candidates | None]) -> ExplainedChange:
-        """What a class explains of the change of a fit."""
+    def _explained(self, name: str, fit: ReferenceFit, candidates: Candidates, few: Candidates | None) -> ExplainedChange:
+        """What a class explains of the change of a fit, by all its bodies and for pairs a few of them."""
         check_time()
-        candidates, coarse = (
-            some and replace(some, signals=whitened(fit.factor * some.signals, fit.covariance)) for some in bodies
-        )
-        assert candidates is not None  # only the coarse ones may be missing
-        change = Change(whitened(fit.change, fit.covariance), self.contrast_spread)
-        if coarse is None:
-            one = change.single(candidates)
-            return ExplainedChange(fit.log_whitening + one.evidence, one, candidates)
-        one = change.double(candidates, coarse, np.random.default_rng([self.seed, CLASSES.index(name)]))
-        return ExplainedChange(fit.log_whitening + one.evidence, one, candidates)
+        change, white = Change.of_fit(fit, self.contrast_spread), over_errors(candidates, fit)
+        if few is None:
+            bodies = change.single(white)
+        else:
+            generator = np.random.default_rng([self.seed, CLASSES.index(name)])
+            bodies = change.double(white, over_errors(few, fit), generator)
+        return ExplainedChange(fit.log_whitening + bodies.evidence, bodies, white)
 
-    def _bodies(self, name: str, response: TissueResponse, size: Array) -> tuple[Candidates, Candidates | None]:
-        """The bodies of a class, and for pairs a few of them."""
-        balls, tubes = (
-            radius_steps(limits_in(size, given, usual), size)
-            for given, usual in ((self.radii, BALL_RADII), (self.tube_radii, TUBE_RADII))
-        )
+    def _bodies(
+        self, name: str, balls: Candidates, response: TissueResponse, size: Array
+    ) -> tuple[Candidates, Candidates | None]:
+        """The bodies of a class, those of lumps being ``balls``, and for pairs a few of them."""
         gap = gap_in(size, self.gap)
         if name == "lump":
-            return ball_candidates(response, size, balls, gap=gap), None
+            return balls, None
         if name == "two_lumps":
-            few = ball_candidates(response, size, balls[1::2], gap=gap, every=COARSE)
-            return ball_candidates(response, size, balls, gap=gap), few
+            return balls, ball_candidates(response, size, self._ball_radii(size)[1::2], gap=gap, every=COARSE)
+        radii = radius_steps(limits_in(size, self.tube_radii, TUBE_RADII), size)
         if name == "artery":
-            return tube_candidates(response, size, tubes, gap=gap), None
-        few = tube_candidates(response, size, tubes[1::2], gap=gap, closed=False, spacing=COARSE_SPACING)
-        lower = few.begins[:, 2]
+            return tube_candidates(response, size, radii, gap=gap), None
+        few = tube_candidates(response, size, radii[1::2], gap=gap, closed=False, spacing=COARSE_SPACING)
+        lower = few.geometry.begins[:, 2]
         kept = few.chosen(np.isin(lower, np.unique(lower)[::COARSE]))
-        return tube_candidates(response, size, tubes, gap=gap, closed=False, spacing=FINE_SPACING), kept
+        return tube_candidates(response, size, radii, gap=gap, closed=False, spacing=FINE_SPACING), kept
+
+    def _ball_radii(self, size: Array) -> list[float]:
+        """Radii in m of the balls that are tried in a block of this size (3,) in m."""
+        return radius_steps(limits_in(size, self.radii, BALL_RADII), size)
 
     def _prior(self, name: str) -> float:
         """Log prior probability of a class."""

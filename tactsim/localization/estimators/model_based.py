@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
@@ -12,19 +12,17 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
-from tactsim.interfaces.readings import Readings, TissueResponse
+from tactsim.interfaces.readings import Readings
 from tactsim.localization.candidates import (
     BALL_RADII,
     RadiusLimits,
     ball_candidates,
-    centres_and_room,
+    balls_between,
     gap_in,
     limits_in,
-    no_body,
     radius_steps,
-    untabulated,
 )
-from tactsim.localization.evidence import Change, nothing
+from tactsim.localization.evidence import Change, nothing, over_errors
 from tactsim.localization.posterior import covariance_about, likely_bodies
 from tactsim.localization.reference_errors import (
     OTHER_TISSUE,
@@ -36,7 +34,6 @@ from tactsim.localization.reference_errors import (
     factor_words,
     fitted,
     stated_factor,
-    whitened,
     without_error,
 )
 from tactsim.localization.region import CellRegion
@@ -47,16 +44,6 @@ EVERY, COARSE = 2, 4
 """Spacing, in tabulated centres, of the balls of which pairs are made, and of those that are tried in all pairs."""
 SEED = 1
 """Of the draws by which pairs are averaged."""
-
-
-@dataclass(frozen=True, eq=False)
-class Candidates:
-    """All balls of the table that fit: number (n,) of the centre in the grid, centres (n, 3), radii (n,), signals (n, taxels)."""
-
-    cells: Array
-    centers: Array
-    radii: Array
-    signals: Array
 
 
 class ModelBasedEstimator(Estimator):
@@ -131,7 +118,9 @@ class ModelBasedEstimator(Estimator):
         if readings.difference is None or readings.response is None or readings.reference is None:
             raise InputError("the model-based estimator needs a reference without a lump and the response of the tissue")
         change, plain = readings.difference.ravel(), np.asarray(readings.reference, dtype=float).ravel()
-        candidates = self._candidates(readings.response, readings.block_size)
+        limits, gap = limits_in(readings.block_size, self.radii, BALL_RADII), gap_in(readings.block_size, self.gap)
+        candidates = balls_between(readings.response, readings.block_size, limits, gap=gap)
+        balls = candidates.geometry
         priors = self._errors(plain, readings.noise)
         if any(without_error(change, errors) for errors in priors):
             return Estimate(False, (), UNCHANGED, 0.0)
@@ -143,13 +132,11 @@ class ModelBasedEstimator(Estimator):
             reason = f"no inclusion (probability {1 - probability:.3g})"
             return Estimate(False, (), reason + factor_words(bare), probability, factor=bare)
         factor = stated_factor(fit.factor, self.factor_spread)
-        samples = np.column_stack([candidates.centers, candidates.radii, fit.contrasts / fit.factor])
-        shape = tuple(map(len, readings.response.axes))
-        region = CellRegion(
-            readings.response.axes, np.bincount(candidates.cells, fit.weights, int(np.prod(shape))).reshape(shape)
-        )
-        mean = fit.weights @ samples
-        covariance = covariance_about(mean, samples, fit.weights, spreads=fit.spreads / fit.factor**2, cell=region.cell)
+        weights = fit.weights
+        samples = np.column_stack([balls.centers, balls.radii, fit.contrasts / fit.factor])
+        region = CellRegion.of_centres(readings.response.axes, balls.centers, weights)
+        mean = weights @ samples
+        covariance = covariance_about(mean, samples, weights, spreads=fit.spreads / fit.factor**2, cell=region.cell)
         x, y, z, radius, contrast = map(float, mean)
         pair = self._pair(readings, fit, between=not region.contains(mean[:3]))
         near = pair is not None and _apart(pair) < readings.layout.pitch
@@ -171,13 +158,10 @@ class ModelBasedEstimator(Estimator):
             return None
         radii, gap = radius_steps(limits_in(size, self.radii, BALL_RADII), size), gap_in(size, self.gap)
         fine, coarse = (
-            replace(balls, signals=whitened(fit.factor * balls.signals, fit.covariance))
-            for balls in (
-                ball_candidates(response, size, radii, gap=gap, every=EVERY),
-                ball_candidates(response, size, radii[1::2], gap=gap, every=COARSE),
-            )
+            over_errors(ball_candidates(response, size, tried, gap=gap, every=every), fit)
+            for tried, every in ((radii, EVERY), (radii[1::2], COARSE))
         )
-        white = Change(whitened(fit.change, fit.covariance), self.contrast_spread)
+        white = Change.of_fit(fit, self.contrast_spread)
         two = white.double(fine, coarse, np.random.default_rng(SEED))
         if not np.isfinite(two.evidence):
             return None
@@ -202,21 +186,6 @@ class ModelBasedEstimator(Estimator):
         """Of a reference p (taxels,) in N of the same tissue, and of another."""
         factors = [self.background_scale, float(np.hypot(self.background_scale, self.factor_spread))]
         return [ReferenceErrors(plain, noise, self.background_error, factor, self.model_error) for factor in sorted(set(factors))]
-
-    def _candidates(self, response: TissueResponse, size: Array) -> Candidates:
-        """All balls of the table that fit into the block."""
-        limits, gap = limits_in(size, self.radii, BALL_RADII), gap_in(size, self.gap)
-        chosen = np.flatnonzero((response.radii >= limits[0] - 1e-12) & (response.radii <= limits[1] + 1e-12))
-        if not len(chosen):
-            raise untabulated(response, limits)
-        grid, room = centres_and_room(response.axes, size)
-        cells = [np.flatnonzero(room >= response.radii[k] + gap) for k in chosen]
-        signals = [response.values[k].reshape(len(grid), -1)[inside] for k, inside in zip(chosen, cells, strict=True)]
-        radii = np.repeat(response.radii[chosen], [len(inside) for inside in cells])
-        every = np.concatenate(cells)
-        if not len(every):
-            raise no_body("ball")
-        return Candidates(every, grid[every], radii, np.concatenate(signals))
 
     def _probability(self, fits: list[ReferenceFit]) -> float:
         """Of anything being there; each prior of the factor is as likely as the other."""

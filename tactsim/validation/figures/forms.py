@@ -16,9 +16,9 @@ from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.plotting.canvas import (
     PRESSURE_COLOURS,
     despined,
+    encoded,
     entitle,
     new_figure,
-    png,
     scale_of,
     styled,
     weighted_percentiles,
@@ -56,7 +56,7 @@ def validation_figure(data: dict[str, Any]) -> bytes:
     if data["form"] not in forms:
         raise UnknownName("form of a figure", str(data["form"]), forms)
     with styled():
-        return png(forms[data["form"]](data))
+        return encoded(forms[data["form"]](data))
 
 
 def ranges_figure(data: dict[str, Any]) -> Figure:

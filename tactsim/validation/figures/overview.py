@@ -8,7 +8,7 @@ from collections.abc import Mapping, Sequence
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from tactsim.plotting.canvas import despined, new_figure, png, styled
+from tactsim.plotting.canvas import despined, encoded, new_figure, styled
 from tactsim.validation.comparison import RowOutcome
 from tactsim.validation.figures.forms import label_decades, write_title
 
@@ -22,7 +22,7 @@ def overview(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mappi
     ``chapters`` holds the chapter of each row.
     """
     with styled():
-        return png(overview_figure(rows, chapters, colours))
+        return encoded(overview_figure(rows, chapters, colours))
 
 
 def overview_figure(rows: Sequence[RowOutcome], chapters: Sequence[str], colours: Mapping[str, str]) -> Figure:

@@ -10,13 +10,14 @@ from matplotlib.figure import Figure
 from matplotlib.image import imread
 from matplotlib.lines import Line2D
 
-from tactsim.cli.figures.material_curves import fit_figure, material_figure, png, pressure_unit
+from tactsim.cli.figures.material_curves import fit_figure, material_figure, pressure_unit
 from tactsim.identification.uniaxial import FORMS, fit_uniaxial, uniaxial_nominal_stress
 from tactsim.identification.uniaxial_data import UniaxialCurve
 from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import PATHS
 from tactsim.materials.library import named_material
 from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.plotting.canvas import encoded
 from tactsim.registry import kinds
 
 SHIPPED = {name: named_material(name).material for name in ("b1a_printed", "icf_stable")}
@@ -27,7 +28,7 @@ EXAMPLES = {kind: cls.example() for kind, cls in kinds(Material).items()}
 
 def assert_nothing_is_cut(figure: Figure) -> None:
     """The outermost pixels of the saved figure are white."""
-    content = png(figure)
+    content = encoded(figure)
     assert content.startswith(b"\x89PNG")
     pixels = imread(io.BytesIO(content))[:, :, :3]
     for edge in (pixels[0], pixels[-1], pixels[:, 0], pixels[:, -1]):

@@ -35,8 +35,8 @@ def test_a_malformed_line_is_counted_with_its_place_and_the_next_is_read() -> No
     feed = Feed("test")
     stream = feed.stream()
     stream.take(line(description()) + b"nonsense\n" + line(frame_line(1.0)))
-    assert (feed.counts.frames, feed.counts.malformed) == (1, 1)
-    assert feed.counts.fault.startswith("line 2: not JSON")
+    assert (feed.state_now()["frames"], feed.state_now()["malformed"]) == (1, 1)
+    assert feed.state_now()["fault"].startswith("line 2: not JSON")
     assert feed.frame is not None
     assert feed.frame.time == 1.0
     stream.take(line(description(4)))
@@ -54,7 +54,7 @@ def test_a_growing_file_is_followed_and_a_new_one_is_read_anew(tmp_path: Path) -
             assert feed.frame is None, "half a line is no frame"
             with open(path, "ab") as file:
                 file.write(line(frame_line(1.0))[20:] + line(frame_line(2.0)))
-            await until(lambda: feed.counts.frames == 2)
+            await until(lambda: feed.state_now()["frames"] == 2)
             path.write_bytes(line(description()) + line(frame_line(9.0)))
             await until(lambda: feed.frame is not None and feed.frame.time == 9.0)
             path.unlink()
@@ -71,10 +71,10 @@ def test_a_socket_takes_one_sender_at_a_time_and_the_next_after_it() -> None:
         async with feeding(feed, FeedPlace.of(f"tcp://127.0.0.1:{port}")):
             _, first = await asyncio.open_connection("127.0.0.1", port)
             first.write(line(description()) + line(frame_line(1.0)))
-            await until(lambda: feed.counts.frames == 1)
+            await until(lambda: feed.state_now()["frames"] == 1)
             reader, second = await asyncio.open_connection("127.0.0.1", port)
             assert await reader.read() == b"", "closed at once"
-            assert "second connection" in feed.counts.fault
+            assert "second connection" in feed.state_now()["fault"]
             first.close()
             await until(lambda: "has gone" in feed.state)
             _, third = await asyncio.open_connection("127.0.0.1", port)
@@ -96,7 +96,7 @@ def test_what_a_browser_posts_to_the_socket_is_not_taken() -> None:
             writer.write(b"POST / HTTP/1.1\r\nHost: x\r\n\r\n" + line(description()) + line(frame_line()))
             assert await reader.read() == b""
             assert feed.scene is None
-            assert "connection was closed" in feed.counts.fault
+            assert "connection was closed" in feed.state_now()["fault"]
             writer.close()
 
     asyncio.run(check())
@@ -139,7 +139,7 @@ async def main():
         async with asyncio.timeout(20):
             while "ended" not in feed.state:
                 await asyncio.sleep(0.01)
-    sys.stdout.write(f"{feed.counts.frames} {feed.counts.malformed} {feed.frame.time}")
+    sys.stdout.write(f"{feed.state_now()['frames']} {feed.state_now()['malformed']} {feed.frame.time}")
 
 asyncio.run(main())
 """

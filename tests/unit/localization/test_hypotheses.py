@@ -40,32 +40,35 @@ def balls(response, *centers, radius=4e-3, contrast=3.0):
 
 def tube(response, *, angle=0, height=12e-3, contrast=3.0):
     candidates = tube_candidates(response, SIZE, [3e-3], gap=GAP, closed=False)
-    direction = (candidates.ends - candidates.begins)[:, :2]
+    tubes = candidates.geometry
+    direction = (tubes.ends - tubes.begins)[:, :2]
     wanted = np.array([np.cos(angle), np.sin(angle)])
     along = np.abs(direction @ wanted) / np.linalg.norm(direction, axis=1) > 1 - 1e-9
-    off = np.linalg.norm(candidates.centers[:, :2] - 20e-3, axis=1) + np.abs(candidates.centers[:, 2] - height) + 1.0 * ~along
+    off = np.linalg.norm(tubes.centers[:, :2] - 20e-3, axis=1) + np.abs(tubes.centers[:, 2] - height) + 1.0 * ~along
     number = int(off.argmin())
-    return contrast * candidates.signals[number].reshape(2, 3, 3), candidates.centers[number], candidates.radii[number]
+    return contrast * candidates.signals[number].reshape(2, 3, 3), tubes.centers[number], tubes.radii[number]
 
 
 def test_a_tube_is_the_integral_of_a_constant_density_over_it():
     flat = bell_response(RADII, lambda places: np.ones((1, 1, 1, len(places))))
     candidates = tube_candidates(flat, SIZE, [3e-3], gap=GAP, closed=True)
-    middle = np.abs(candidates.centers[:, 2] - 10e-3).argmin()
-    inner = np.linalg.norm(candidates.centers[:, :2] - 20e-3, axis=1) < 5e-3
-    chosen = candidates.chosen(inner & (candidates.centers[:, 2] == candidates.centers[middle, 2]))
-    volumes = np.pi * chosen.radii**2 * np.linalg.norm(chosen.ends - chosen.begins, axis=1)
+    centers = candidates.geometry.centers
+    middle = np.abs(centers[:, 2] - 10e-3).argmin()
+    inner = np.linalg.norm(centers[:, :2] - 20e-3, axis=1) < 5e-3
+    chosen = candidates.chosen(inner & (centers[:, 2] == centers[middle, 2]))
+    tubes = chosen.geometry
+    volumes = np.pi * tubes.radii**2 * np.linalg.norm(tubes.ends - tubes.begins, axis=1)
     # the ends lose up to 0.35 of the radius of the ball, and a cut tube gains as much at neither end
     assert chosen.signals[:, 0] == pytest.approx(volumes, rel=0.1)
 
 
 def test_overlapping_bodies_are_reported():
     response = bell_response(RADII)
-    candidates = ball_candidates(response, SIZE, [2.5e-3], gap=GAP)
-    one = int(np.linalg.norm(candidates.centers - SIZE / 2, axis=1).argmin())
-    away = np.linalg.norm(candidates.centers - candidates.centers[one], axis=1)
-    np.testing.assert_array_equal(candidates.overlaps(one), away < 5e-3)
-    tubes = tube_candidates(response, SIZE, [2.5e-3], gap=GAP, closed=False, spacing=4e-3)
+    balls = ball_candidates(response, SIZE, [2.5e-3], gap=GAP).geometry
+    one = int(np.linalg.norm(balls.centers - SIZE / 2, axis=1).argmin())
+    away = np.linalg.norm(balls.centers - balls.centers[one], axis=1)
+    np.testing.assert_array_equal(balls.overlaps(one), away < 5e-3)
+    tubes = tube_candidates(response, SIZE, [2.5e-3], gap=GAP, closed=False, spacing=4e-3).geometry
     along = np.abs(tubes.begins[:, 1] - tubes.ends[:, 1]) < 1e-9
     level = tubes.begins[:, 2] == tubes.begins[0, 2]
     parallel = np.flatnonzero(along & level)
@@ -73,7 +76,7 @@ def test_overlapping_bodies_are_reported():
     apart = np.abs(tubes.begins[parallel, 1] - tubes.begins[parallel[0], 1])
     np.testing.assert_array_equal(meets[parallel], apart < 2 * tubes.radii[0])
     assert meets[np.flatnonzero(level & ~along)].any()
-    for bodies in (candidates, tubes):
+    for bodies in (balls, tubes):
         some = np.arange(0, len(bodies), 7)
         np.testing.assert_array_equal(bodies.overlaps(some), [bodies.overlaps(int(k)) for k in some])
 
@@ -95,8 +98,8 @@ def test_single_evidence_is_that_of_the_joint_normal_distribution(response):
 def some_tubes(response):
     """Tubes at two heights, of which most at one height cross each other."""
     tubes = tube_candidates(response, SIZE, [3.5e-3], gap=GAP, closed=False, spacing=6e-3)
-    heights = np.unique(tubes.begins[:, 2])
-    return tubes.chosen(np.isin(tubes.begins[:, 2], heights[[1, -2]]))
+    heights = np.unique(tubes.geometry.begins[:, 2])
+    return tubes.chosen(np.isin(tubes.geometry.begins[:, 2], heights[[1, -2]]))
 
 
 @pytest.mark.parametrize("kind", ["balls", "tubes"])
@@ -110,7 +113,7 @@ def test_the_evidence_of_pairs_is_their_mean_over_all(response, kind):
     for i in range(len(candidates)):
         pairs = candidates.signals[i][:, None] * candidates.signals[i] + np.eye(18) / 25
         base = 25 * pairs
-        for j in np.flatnonzero(~candidates.overlaps(i)):
+        for j in np.flatnonzero(~candidates.geometry.overlaps(i)):
             covariance = base + 25 * np.outer(candidates.signals[j], candidates.signals[j])
             exact.append(-(values @ np.linalg.solve(covariance, values) + np.linalg.slogdet(covariance)[1]) / 2)
     largest = max(exact)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tactsim.outside.text import aligned, one_line, printable
+from tactsim.outside.text import aligned, first_names, one_line, printable
 
 
 @pytest.mark.parametrize(
@@ -38,3 +38,8 @@ def test_columns_are_as_wide_as_their_widest_cell() -> None:
     assert aligned(table) == ["       soft         hard", "force   1 N  -1.2346e-12"]
     assert aligned(table, left=3, least=[7, 6], indent="  ") == ["           soft    hard", "  force    1 N     -1.2346e-12"]
     assert aligned([]) == []
+
+
+def test_of_many_names_the_first_are_named_and_the_others_counted():
+    assert first_names(["a", "b"], 2) == "a, b"
+    assert first_names([3, 12, 40], 2) == "3, 12 and 1 more"

@@ -25,11 +25,11 @@ def draw_course(axis: Axes, result: Result, scene: BoundaryValueScene) -> None:
     """What was asked for over time: one course in its unit, of several each over its largest magnitude; of a single time, the
     numbers themselves.
     """
-    time = np.asarray(result.history_values("time"))
+    time = result.history_values("time")
     if len(time) == 1:
         _write_numbers(axis, result, scene)
         return
-    asked = {name: np.asarray(result.history_values(name)) for name in list(scene.asked)[: len(MARKS)]}
+    asked = {name: result.history_values(name) for name in list(scene.asked)[: len(MARKS)]}
     groups = _alike(asked)
     if len(groups) == 1 and len({format_quantity(_most(values), scene.asked[name]) for name, values in asked.items()}) == 1:
         name = next(iter(asked))

@@ -138,6 +138,6 @@ def _finished(result: Result) -> int:
 
 def _by_shape(result: Result, name: str) -> Array:
     """A history value, shape (shapes, elastomers); NaN where it is absent."""
-    values = np.array([step.values.get(name, np.nan) for step in result.steps], dtype=float)
+    values = result.history_values(name)
     count = len(_elastomers(result))
     return values[: _finished(result) * count].reshape(-1, count)

@@ -25,7 +25,7 @@ def capacitive_test_figure(result: Result) -> Figure:
         axes[0].set(xlabel="force in N", ylabel="capacitance in pF", ylim=(0, None))
         axes[0].set_title("capacitance and its line", loc="left")
         axes[0].legend(loc="lower right")
-        strain = np.array([step.values["strain"] for step in result.steps if step.values["time"] == 0.0])
+        strain = result.history_values("strain")[result.history_values("time") == 0.0]
         axes[1].plot(forces, 100 * strain, "o-", color=DATA, markersize=3)
         axes[1].set(xlabel="force in N", ylabel="compressive strain in %", ylim=(0, None))
         axes[1].set_title("strain of the dielectric", loc="left")

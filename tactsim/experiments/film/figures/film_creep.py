@@ -56,7 +56,7 @@ def _draw_coefficients(axis: Axes, result: Result) -> None:
     forces, axes = result.history_values("force"), coefficient_axes(axis)
     for (name, label, colour, _), marker in zip(COEFFICIENTS, MARKERS, strict=True):
         values = result.history_values(name) / 1e6
-        widths = np.array([step.values[f"{name}_half_width"] for step in result.steps]) / 1e6
+        widths = result.history_values(f"{name}_half_width") / 1e6
         axes[name].errorbar(forces, values, widths, fmt=marker, color=colour, markersize=4, capsize=3, linewidth=1, label=label)
         if f"{name}_slope" in result.quantities:
             slope, intercept = (float(result.quantities[f"{name}_{part}"].value) / 1e6 for part in ("slope", "intercept"))

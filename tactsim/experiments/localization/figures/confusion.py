@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 
 from tactsim.array import Array
 from tactsim.experiments.localization.scene import ConfusionScene
-from tactsim.plotting.canvas import SMALL_TITLE, SingleFigure, png, result_figure, titled_figure
+from tactsim.plotting.canvas import SMALL_TITLE, SingleFigure, encoded, result_figure, titled_figure
 from tactsim.results import Result
 
 DARK = 0.6
@@ -40,7 +40,7 @@ def confusion_png(table: Sequence[Sequence[int]], classes: Sequence[str], title:
     counts = np.array(table)
     with titled_figure(*_size(counts), title, title_size=SMALL_TITLE) as figure:
         _draw(figure.subplots(), counts, classes)
-    return png(figure)
+    return encoded(figure)
 
 
 def _size(counts: Array) -> tuple[float, float]:
