@@ -9,9 +9,11 @@ import sys
 import threading
 from argparse import Namespace
 from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
+import tactsim
 from tactsim.cli import entry, interruption
 from tactsim.cli.interruption import SIGNALS, interruptible
 
@@ -59,11 +61,15 @@ def test_a_stop_that_a_library_swallowed_is_heeded_by_the_next_block() -> None:
             pytest.fail("it went on")
 
 
-def test_a_stop_while_a_dataclass_is_made_has_the_exit_code_of_any_other() -> None:
-    """Its methods are made by exec, and an interrupt within exec had Python end by SIGINT whatever code was returned."""
+def test_a_stop_while_a_dataclass_is_made_has_the_exit_code_of_any_other(tmp_path: Path) -> None:
+    """Its methods are made by exec, and an interrupt within exec had ``python -m`` end by SIGINT whatever code was returned."""
     stopped = "command_list.run = lambda parsed: exec('raise KeyboardInterrupt')"
-    program = f"import sys; from tactsim.cli import command_list, entry; {stopped}; sys.exit(entry.main(['list']))"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    program = f"import sys\nfrom tactsim.cli import command_list, entry\n{stopped}\nsys.exit(entry.main(['list']))"
+    (tmp_path / "stopped.py").write_text(program)
+    paths = os.pathsep.join([str(tmp_path), str(Path(tactsim.__file__).parents[1])])
+    done = subprocess.run(
+        [sys.executable, "-m", "stopped"], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": paths}
+    )
     assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
 
 
