@@ -104,10 +104,10 @@ class AmbiguousKind(InputError):
 
 
 class IncompleteKind(InputError, ValueError):
-    """The class that states a kind lacks methods that its extension point demands; the message names them."""
+    """The class that states a kind lacks what its extension point demands; the message names it."""
 
-    def __init__(self, what: str, kind: str, cls: Any):
-        super().__init__(f"{what} {shown(kind)}: its class {cls.__qualname__} lacks {', '.join(sorted(cls.__abstractmethods__))}")
+    def __init__(self, what: str, kind: str, cls: Any, missing: Iterable[str]):
+        super().__init__(f"{what} {shown(kind)}: its class {cls.__qualname__} lacks {', '.join(missing)}")
 
 
 class IncompleteInstallation(InputError):

@@ -1,9 +1,8 @@
-"""The bases of every extension point: a concrete subclass is registered by its ``kind`` as it is defined."""
+"""The bases of every extension point: a complete subclass is registered by its ``kind`` as it is defined."""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from inspect import isabstract
 from typing import Any, ClassVar, Self
 
 from tactsim.errors import InvalidQuantity, shown
@@ -26,7 +25,7 @@ class Kind(FrozenModel, ABC):
         for name, one in cls.model_fields.items():
             if one.annotation is float and isinstance(one.default, str):  # nothing reads it, and text goes where a number belongs
                 raise InvalidQuantity(f"{cls.__name__}.{name}: the default {shown(one.default)} is text; needed: a number in SI")
-        if "kind" in vars(cls).get("__annotations__", {}) and not isabstract(cls):
+        if "kind" in vars(cls).get("__annotations__", {}):
             register(cls)
 
     @classmethod

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import re
 from collections.abc import Callable, Mapping
 from functools import cache
 from typing import Any
@@ -20,7 +21,9 @@ _registered: dict[type, dict[str, Any]] = {}
 
 
 def register(cls: Any) -> None:
-    """Make a concrete class known by its ``kind``; one defined again in the same module takes the place of the earlier one.
+    """Make a complete class known by its ``kind``; one defined again in the same module takes the place of the earlier one.
+
+    An incomplete one takes it too, so that nobody computes with the earlier one: its kind is then refused.
 
     Raises
     ------
@@ -30,12 +33,27 @@ def register(cls: Any) -> None:
     known = _registered.setdefault(family(cls), {})
     kind = cls.model_fields["kind"].default
     other = known.get(kind, cls)
-    if (other.__module__, other.__qualname__) != (cls.__module__, cls.__qualname__):
+    again = (other.__module__, other.__qualname__) == (cls.__module__, cls.__qualname__)
+    if lacking(cls):
+        if again:
+            known.pop(kind, None)
+        return
+    if not again:
         raise AmbiguousKind(
-            f"two {family(cls).__name__.lower()} kinds are called {kind!r}: "
+            f"two {_in_words(family(cls))} kinds are called {kind!r}: "
             f"{other.__module__}.{other.__qualname__} and {cls.__module__}.{cls.__qualname__}; give one of them another kind"
         )
     known[kind] = cls
+
+
+def lacking(cls: Any) -> list[str]:
+    """Methods and class variables that its extension point demands and a class lacks."""
+    return sorted({*cls.__abstractmethods__, *(name for name in cls.__class_vars__ if not hasattr(cls, name))})
+
+
+def _in_words(point: Any) -> str:
+    """What messages call an extension point, such as a contact law."""
+    return re.sub(r"(?<=[a-z])(?=[A-Z])", " ", point.__name__).lower()
 
 
 def forget(thing: Any) -> None:
@@ -85,15 +103,15 @@ def kind_class(base: Any, kind: str) -> Any:
     AmbiguousKind
         If another class has that kind, too.
     UnknownName, IncompleteKind
-        With the nearest registered kind; with the methods that the class of this kind lacks.
+        With the nearest registered kind; with what the class of this kind lacks.
     """
     _load_named(base, kind)
     if kind in _registered.get(base, {}):
         return _registered[base][kind]
-    what = f"{base.__name__.lower()} kind"
+    what = f"{_in_words(base)} kind"
     for cls in _below(base):
-        if cls.__abstractmethods__ and cls.model_fields["kind"].default == kind:
-            raise IncompleteKind(what, kind, cls)
+        if cls.model_fields["kind"].default == kind and (missing := lacking(cls)):
+            raise IncompleteKind(what, kind, cls, missing)
     raise UnknownName(what, kind, kind_names(base))
 
 

@@ -156,6 +156,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
     from tactsim.case.placing import placed
     from tactsim.outside.library_warnings import collected_warnings
     from tactsim.progress import noted_by
+    from tactsim.results import Status
     from tactsim.results.folder import claimed
 
     seconds = _time_limit(arguments.time_limit)
@@ -173,6 +174,8 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
             with collected_warnings() as raised, noted_by(progress and console.note), placed(case, document, place):
                 try:
                     result = case.experiment.run(progress, time_limit=seconds)
+                    if result.status is Status.INTERRUPTED and not (result.steps or result.quantities):
+                        raise KeyboardInterrupt
                 except KeyboardInterrupt:
                     raise KeyboardInterrupt(f"nothing was accepted yet, so {one_line(directory)} is not written") from None
             result = replace(result, warnings=(*result.warnings, *listed, *read.lines(), *raised.lines()))

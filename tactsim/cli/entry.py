@@ -125,6 +125,8 @@ def _exit_code(arguments: Sequence[str] | None) -> int:
     except SystemExit as end:  # argparse ends --help and --version this way
         return int(end.code or 0)
     except KeyboardInterrupt as stop:
+        # Until the next exec, an interrupt within one, as of a dataclass being made, lets Python end by SIGINT whatever the code.
+        exec("")  # noqa: S102
         console.error(": ".join(("interrupted", *map(str, stop.args))))
         return INTERRUPTED
     except TactsimError as error:

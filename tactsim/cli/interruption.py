@@ -47,13 +47,23 @@ class Interruption:
 
 @contextmanager
 def interruptible() -> Iterator[Interruption]:
-    """Turns SIGINT, SIGTERM and SIGHUP into one KeyboardInterrupt, and a second of them into the end of the process."""
+    """Turns SIGINT, SIGTERM and SIGHUP into one KeyboardInterrupt, and a second of them into the end of the process.
+
+    Raises
+    ------
+    KeyboardInterrupt
+        If the block around this one was stopped already and goes on: a library swallowed its KeyboardInterrupt, as some do while
+        they are imported.
+    """
     interruption = Interruption()
     if threading.current_thread() is not threading.main_thread():
         yield interruption
         return
     ignored = (signal.SIG_IGN, None)  # the caller asked to ignore the signal, as ``nohup`` does
     heeded = [number for number in SIGNALS if signal.getsignal(number) not in ignored]
+    around = [getattr(signal.getsignal(number), "__self__", None) for number in heeded]
+    if any(isinstance(one, Interruption) and one.requested for one in around):
+        raise KeyboardInterrupt
     earlier = {number: signal.signal(number, interruption.receive) for number in heeded}
     try:
         yield interruption

@@ -30,7 +30,7 @@ from tactsim.kind import CaseKind, Kind
 from tactsim.relaxation import Relaxation
 from tactsim.results.result import Result
 from tactsim.results.scene import Scene as Scene
-from tactsim.units import Area, Positive
+from tactsim.units import Area, Positive, Pressure
 
 
 class Material(CaseKind):
@@ -53,7 +53,7 @@ class Material(CaseKind):
     """Compiled loops that equal the methods below: of an energy of the isochoric invariants, of linear elasticity, or none."""
     small_strain: ClassVar[bool] = False
     """Whether it holds for small strain and rotation only: stress per reference area, volumes that may turn over."""
-    bulk_modulus: float | None
+    bulk_modulus: Positive[Pressure] | None
     relaxation: Relaxation | None = None
     """Relaxation of the isochoric stress; null means elastic."""
 

@@ -12,6 +12,7 @@ from tactsim.errors import UnknownName
 from tactsim.interfaces import Material
 from tactsim.materials.library import LIBRARY, named_material
 from tactsim.materials.moduli import BulkModulus
+from tactsim.materials.own_law import check_law
 from tactsim.model import FrozenModel
 from tactsim.registry import kind_class, kinds
 from tactsim.relaxation import Relaxation
@@ -38,17 +39,24 @@ def read_material(value: Any, info: ValidationInfo) -> Material:
     """
     if isinstance(value, Material):
         value.require_own_kind()
-        return value
+        return _checked(value)
     try:
         if isinstance(value, str):
             return named_material(value).material
         if isinstance(value, Mapping) and "set" in value:
             return _changed_set(SetReference.model_validate(value, context=info.context))
         if isinstance(value, Mapping) and "kind" in value:
-            return cast(Material, kind_class(Material, str(value["kind"])).model_validate(value, context=info.context))
+            return _checked(cast(Material, kind_class(Material, str(value["kind"])).model_validate(value, context=info.context)))
     except UnknownName as error:
         raise PydanticCustomError("unknown_name", "{message}", {"message": str(error)}) from None
     raise ValueError(f"expected the name of a material set ({', '.join(sorted(LIBRARY))}) or a mapping with the key kind or set")
+
+
+def _checked(material: Material) -> Material:
+    """The material, after its own stress and tangent were looked at if no compiled form stands for them."""
+    if material.compiled_form is None:
+        check_law(material)
+    return material
 
 
 def _changed_set(reference: SetReference) -> Material:

@@ -52,7 +52,10 @@ def check_derivatives(law: Energy) -> None:
 
 def _parts(law: Energy, method: str, names: tuple[str, ...], I1: Array, I2: Array) -> Array:
     """What a method returns, (parts, states)."""
-    returned: Any = getattr(law, method)(I1, I2)
+    try:
+        returned: Any = getattr(law, method)(I1, I2)
+    except ValueError as error:
+        raise InvalidQuantity(f"{method} of {type(law).__name__} failed at stretches of {STRETCHES.tolist()}: {error}") from error
     needed = f"{method} of {type(law).__name__} must return ({', '.join(names)}), each of the shape of the invariants"
     if not isinstance(returned, tuple) or len(returned) != len(names):
         raise InvalidQuantity(f"{needed}; it returned {_described(returned)}")

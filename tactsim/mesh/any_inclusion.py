@@ -48,7 +48,7 @@ def check_inclusions(size: Array, inclusions: Sequence[Inclusion], gap: float) -
     solids = []
     for number, inclusion in enumerate(inclusions, 1):
         name = inclusion_name(number, inclusion)
-        body = _checked_solids(inclusion, size)[0]
+        body = checked_solids(inclusion, size)[0]
         _check_extent(body, size, name)
         inclusion.check_in_block(size, gap, name)
         solids.append(_Embedded(name, body, size, hollow=len(inclusion.solids(size)) > 1))
@@ -56,8 +56,14 @@ def check_inclusions(size: Array, inclusions: Sequence[Inclusion], gap: float) -
         _check_apart(first, second, gap)
 
 
-def _checked_solids(inclusion: Inclusion, size: Array) -> tuple[Solid, ...]:
-    """The solids of an inclusion; refuses a kind whose solids are no tuple of one, or of an outer and an inner one."""
+def checked_solids(inclusion: Inclusion, size: Array) -> tuple[Solid, ...]:
+    """The solids of an inclusion in a block of size (3,) in m.
+
+    Raises
+    ------
+    InvalidQuantity
+        If they are no tuple of one, or of an outer and an inner one.
+    """
     solids: object = inclusion.solids(size)
     if not isinstance(solids, tuple) or len(solids) not in (1, 2) or not all(isinstance(one, Solid) for one in solids):
         needed = "a tuple of a Solid, or of the outer and the inner one of a hollow body"

@@ -23,6 +23,7 @@ from tactsim.storage.building import (
     is_empty,
     is_marked,
     moved_aside,
+    refuse_within_data_set,
     remove,
     remove_leftover,
     remove_marked,
@@ -196,6 +197,7 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
     folder = OutputFolder(path, replace)
     with only_one(path, f"the output folder {path} is in use by another run; wait for it or choose another folder"):
         try:
+            refuse_within_data_set(path)
             folder.recover()
             check_replaceable(path, replace)
             folder.start()

@@ -20,6 +20,8 @@ MARK = ".tactsim-partial"
 """Name of the file that says whose the folder is; what it holds is for people."""
 WORDS = b"This folder is being written by tactsim; if no tactsim runs, it may be removed.\n"
 CONTENT = "content"
+DATA_SET = "zarr.json"
+"""Name of a file by which the folder of a data set, and of each of its arrays, is known."""
 
 
 def waiting_folder(place: Path) -> Path:
@@ -85,6 +87,19 @@ def refuse_taken(place: Path) -> None:
     """
     if os.path.lexists(place) and not is_empty(place):
         raise StorageError(f"{one_line(place)} exists; nothing is replaced: choose another place, or move it away")
+
+
+def refuse_within_data_set(place: Path) -> None:
+    """Refuses a new place within a data set, whose check would report it as foreign.
+
+    Raises
+    ------
+    StorageError
+        Naming both.
+    """
+    around = [folder for folder in Path(os.path.realpath(place)).parents if os.path.lexists(folder / DATA_SET)]
+    if around:
+        raise StorageError(f"{one_line(place)} lies in the data set {one_line(around[-1])}; choose a place outside it")
 
 
 def is_marked(folder: Path) -> bool:

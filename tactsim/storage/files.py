@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -9,6 +10,9 @@ from pathlib import Path
 
 from tactsim.errors import StorageError
 from tactsim.outside.text import one_line
+
+NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)
+"""Numbers of the system's refusals of a disk that is full or may not be written."""
 
 
 @contextmanager
@@ -27,6 +31,23 @@ def naming(path: str | Path, verb: str = "write") -> Iterator[None]:
     except (OSError, ValueError, RecursionError) as error:
         reason = _file_above(path) or getattr(error, "strerror", None) or one_line(error)
         raise StorageError(f"cannot {verb} {one_line(path)}: {reason}") from error
+
+
+@contextmanager
+def room(path: str | Path) -> Iterator[None]:
+    """Tells a full or closed disk from damaged content, within a block that reads and writes.
+
+    Raises
+    ------
+    StorageError
+        If there is no room, with the path and the reason.
+    """
+    try:
+        yield
+    except OSError as error:
+        if error.errno not in NO_ROOM:
+            raise
+        raise StorageError(f"cannot write {one_line(path)}: {error.strerror}") from error
 
 
 def _file_above(path: str | Path) -> str | None:

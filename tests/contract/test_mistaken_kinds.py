@@ -2,32 +2,39 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
 from made_grasps import LAYOUT, NOISE, SIZE, plain_forces
+from pydantic import TypeAdapter, ValidationError
 
 from tactsim.array import Array
 from tactsim.contact.checks import check_law, checked_normals
 from tactsim.errors import InputError, InvalidQuantity
-from tactsim.interfaces import ContactLaw, Experiment, Inclusion, Material, RigidBody
+from tactsim.interfaces import ContactLaw, Experiment, Inclusion, Material, RigidBody, SensorFilm
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.solid import Point
 from tactsim.localization.checked_estimate import estimate_of
+from tactsim.materials.any_material import AnyMaterial
 from tactsim.materials.derivatives import check_derivatives
 from tactsim.materials.hyperelastic import Hyperelastic
 from tactsim.materials.library import LIBRARY
+from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mesh.any_inclusion import check_inclusions
+from tactsim.mesh.block import BlockMeshSettings
+from tactsim.mesh.graded.block import graded_misfit
 from tactsim.mesh.inclusions.sphere import Ball
-from tactsim.registry import kind_class
+from tactsim.registry import forget, kind_class
 from tactsim.results import Quantity, Result, Status
 from tactsim.results.document import document_text
 from tactsim.results.result import rows
+from tactsim.sensors.films.film import Film
 
 POINTS = 1e-3 * np.array([[0.0, 1.0, 2.0], [-3.0, -2.0, -1.0]])
 
@@ -43,6 +50,10 @@ WRONG_LAWS = {
     "one array": ({"energy_gradient": lambda s, I1, I2: s.c10 + 0 * I1}, r"must return \(W1, W2\).*it returned a ndarray"),
     "two of three": ({"energy_hessian": lambda s, I1, I2: (0 * I1, 0 * I1)}, r"\(W11, W12, W22\).*it returned 2 of them"),
     "shape": ({"energy_gradient": lambda s, I1, I2: (np.ones(5), 0 * I1)}, r"theirs are \(5,\), \(3,\)"),
+    "failure": (
+        {"energy_gradient": lambda s, I1, I2: int("x")},
+        "energy_gradient of Mine failed at stretches of .*invalid literal",
+    ),
 }
 
 
@@ -52,6 +63,43 @@ def test_a_law_whose_derivatives_are_wrong_is_refused(mistake: str) -> None:
     methods, words = WRONG_LAWS[mistake]
     with pytest.raises(InputError, match=words):
         made_law(NeoHookean, **methods)(c10=3e3)
+
+
+OWN = {"kind": "own_law", "youngs_modulus": 1e4, "poisson_ratio": 0.4}
+WRONG_OWN_LAWS = {
+    "shape": (("first_piola_kirchhoff", lambda law, F, p: F[0]), r"must return an array of the shape \(3, 3, 3\) for F"),
+    "nothing": (("tangent", lambda law, F, p: None), "it returned a NoneType"),
+    "no number": (("first_piola_kirchhoff", lambda law, F, p: F * np.nan), "first_piola_kirchhoff of Own is not finite"),
+    "factor": (
+        ("volume_change", lambda law, F: F[0, 0] - 1),
+        "volume_change_gradient of Own is not the derivative of its volume",
+    ),
+    "failure": (("tangent", lambda law, F, p: int("x")), "tangent of Own failed at strains of 5%: invalid literal"),
+}
+
+
+@pytest.mark.parametrize("mistake", WRONG_OWN_LAWS)
+def test_a_law_whose_own_stress_and_tangent_do_not_fit_is_refused(mistake: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """One without numbers was said to shear a section out of its plane, one with a wrong tangent did not converge."""
+
+    class Own(LinearElastic):  # without its compiled form
+        kind: Literal["own_law"] = "own_law"  # type: ignore[assignment]
+        compiled_form: ClassVar[Any] = None
+
+    reader: TypeAdapter[Material] = TypeAdapter(AnyMaterial)
+    assert reader.validate_python(OWN).shear_modulus > 0
+    (method, wrong), words = WRONG_OWN_LAWS[mistake]
+    monkeypatch.setattr(Own, method, wrong)
+    with pytest.raises(ValidationError, match=words):
+        reader.validate_python(OWN)
+
+
+def test_a_law_of_its_own_stress_reads_a_bulk_modulus_with_its_unit() -> None:
+    """It was refused, and the bare number taken that every other quantity refuses."""
+    field: TypeAdapter[Any] = TypeAdapter(Material.model_fields["bulk_modulus"].annotation)
+    assert field.validate_python("2 MPa") == 2e6
+    with pytest.raises(ValidationError, match="no unit"):
+        field.validate_python(2e6, context={"units": "required"})
 
 
 def test_every_shipped_material_has_the_derivatives_of_its_energy() -> None:
@@ -72,6 +120,41 @@ def test_a_kind_that_lacks_a_method_says_which() -> None:
 
     with pytest.raises(InputError, match=r"'unfinished_law': its class .*Unfinished lacks energy_gradient, energy_hessian"):
         kind_class(Material, "unfinished_law")
+
+
+def test_a_kind_that_is_defined_again_without_a_method_is_not_the_earlier_one() -> None:
+    """A cell of a notebook run again with a method renamed went on computing with the class of the cell before."""
+
+    def cell(**methods: Any) -> Any:
+        stated = {"kind": "defined_again", "__annotations__": {"kind": Literal["defined_again"]}}
+        names = {"__module__": __name__, "__qualname__": "Again"}
+        return type(ContactLaw)("Again", (ContactLaw,), stated | names | methods)  # type: ignore[call-overload]
+
+    none = {
+        "example": classmethod(lambda cls: cls()),
+        "traction_limit": lambda s, p: 0 * p,
+        "traction_limit_slope": lambda s, p: 0 * p,
+    }
+    whole = cell(**none)
+    try:
+        assert kind_class(ContactLaw, "defined_again") is whole
+        cell(**{name: none[name] for name in ("example", "traction_limit")})
+        with pytest.raises(InputError, match="contact law kind 'defined_again': its class Again lacks traction_limit_slope"):
+            kind_class(ContactLaw, "defined_again")
+        whole = cell(**none)
+        assert kind_class(ContactLaw, "defined_again") is whole
+    finally:
+        forget(whole)
+
+
+def test_a_film_that_does_not_state_its_signal_says_so() -> None:
+    """The run ended with an AttributeError of one word."""
+
+    methods = {name: vars(Film)[name] for name in SensorFilm.__abstractmethods__}
+    stated = {"kind": "voiceless_film", "__annotations__": {"kind": Literal["voiceless_film"]}, "__module__": __name__}
+    type(SensorFilm)("Voiceless", (SensorFilm,), stated | methods)  # type: ignore[call-overload]
+    with pytest.raises(InputError, match=r"sensor film kind 'voiceless_film': its class Voiceless lacks signal, unit$"):
+        kind_class(SensorFilm, "voiceless_film")
 
 
 class Leaning(RigidBody):
@@ -146,9 +229,20 @@ class Lone(Inclusion):
         return Ball(np.array(self.center), 4e-3)
 
 
-def test_an_inclusion_whose_solids_are_no_tuple_is_refused() -> None:
-    with pytest.raises(InvalidQuantity, match=r"solids\(\) of Lone returned .*Ball"):
-        check_inclusions(SIZE, [Lone.example()], 0.5e-3)
+class Nothing(Lone):
+    """Has no solid at all."""
+
+    def solids(self, size: Array) -> Any:
+        return ()
+
+
+@pytest.mark.parametrize(("cls", "words"), [(Lone, ".*Ball"), (Nothing, r"\(\)")])
+def test_an_inclusion_whose_solids_are_no_tuple_is_refused(cls: type[Lone], words: str) -> None:
+    """Graded cells, which a grasp tries first, ask for them before anything else does."""
+    refusal = rf"solids\(\) of {cls.__name__} returned {words}"
+    with pytest.raises(InvalidQuantity, match=refusal):
+        check_inclusions(SIZE, [cls(kind="lone")], 0.5e-3)
+    assert re.match(refusal, str(graded_misfit(SIZE, [cls(kind="lone")], [], BlockMeshSettings())))
 
 
 class Answer:

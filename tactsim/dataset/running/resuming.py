@@ -25,7 +25,7 @@ from tactsim.dataset.store.writing import consolidate, create, resize, restore, 
 from tactsim.deadline import TOO_LONG
 from tactsim.errors import CaseError, StorageError
 from tactsim.outside.text import one_line
-from tactsim.storage.building import refuse_taken, remove, remove_leftover
+from tactsim.storage.building import refuse_taken, refuse_within_data_set, remove, remove_leftover
 from tactsim.storage.files import naming
 from tactsim.storage.locking import only_one
 
@@ -74,6 +74,7 @@ def _run(sweep: Sweep, layout: Layout, store: Store) -> SweepRun:
 
 
 def _created(sweep: Sweep, layout: Layout, place: Path) -> Store:
+    refuse_within_data_set(place)
     try:
         refuse_taken(place)
     except StorageError:

@@ -16,7 +16,7 @@ from tactsim.dataset.store.opening import ARRAYS, STORE_SCHEMA, Store, reading
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.storage.building import built_beside
-from tactsim.storage.files import naming, sync
+from tactsim.storage.files import naming, room, sync
 
 if TYPE_CHECKING:
     import zarr
@@ -72,7 +72,7 @@ def consolidate(path: Path) -> None:
     """
     import zarr
 
-    with naming(path), reading(path), warnings.catch_warnings():
+    with naming(path), reading(path), room(path), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Consolidated metadata", category=UserWarning)
         warnings.filterwarnings("ignore", message="Object at", category=UserWarning)
         zarr.consolidate_metadata(path, zarr_format=3)

@@ -19,7 +19,7 @@ from tactsim.errors import ConvergenceError, InputError
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import BallImage
 from tactsim.mesh.affordable import check_unknowns, unknowns_of_cells
-from tactsim.mesh.any_inclusion import check_inclusions, inclusion_name
+from tactsim.mesh.any_inclusion import check_inclusions, checked_solids, inclusion_name
 from tactsim.mesh.block import SIZES, BlockMesh, BlockMeshSettings
 from tactsim.mesh.fitting.curving import SMALLER, fitted
 from tactsim.mesh.graded.beside_jaws import Footprint, footprint_of, widened
@@ -165,7 +165,7 @@ def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump],
     """
     lumps, tubes = [], []
     for inclusion in inclusions:
-        solids = inclusion.solids(extent)
+        solids = checked_solids(inclusion, extent)
         ball, tube = solids[0].ball_image(), as_hollow(solids)
         if ball is not None:
             lumps.append(Lump(ball, solids[0].bounds()))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import os
+import signal
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -13,9 +15,9 @@ from tactsim import plotting
 from tactsim.case import load_case
 from tactsim.cli import main
 from tactsim.errors import CaseError
-from tactsim.interfaces.run import Course
+from tactsim.interfaces.run import Course, Findings
 from tactsim.progress import COMPILATION, Extent
-from tactsim.results import read_result
+from tactsim.results import StepRecord, read_result
 
 
 @pytest.fixture(autouse=True)
@@ -195,11 +197,15 @@ def test_the_form_of_the_figures_is_chosen(monkeypatch: pytest.MonkeyPatch, form
     assert drawn == ([] if names is None else [form])
 
 
+@pytest.mark.parametrize("begun", [False, True], ids=["before it", "within it"])
 def test_an_interruption_before_the_first_step_says_that_nothing_is_written(
-    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+    begun: bool, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    def step() -> Iterator[StepRecord]:
+        yield signal.raise_signal(signal.SIGINT)
+
     def begin(self: Pretence) -> Course:
-        raise KeyboardInterrupt
+        return Course(step(), lambda: Findings("")) if begun else signal.raise_signal(signal.SIGINT)
 
     monkeypatch.setattr(Pretence, "begin", begin)
     assert main(["run", "case.yaml"]) == 130

@@ -4,11 +4,16 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
 import threading
 from argparse import Namespace
+from contextlib import suppress
+from pathlib import Path
 
 import pytest
 
+import tactsim
 from tactsim.cli import entry, interruption
 from tactsim.cli.interruption import SIGNALS, interruptible
 
@@ -45,6 +50,27 @@ def test_the_second_signal_ends_the_process(monkeypatch: pytest.MonkeyPatch) -> 
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGINT)
     assert codes == [130]
+
+
+def test_a_stop_that_a_library_swallowed_is_heeded_by_the_next_block() -> None:
+    """As libraries do while they are imported: a sweep went on to its end, and its exit code was 0."""
+    with interruptible():
+        with suppress(KeyboardInterrupt):
+            signal.raise_signal(signal.SIGTERM)
+        with pytest.raises(KeyboardInterrupt), interruptible():
+            pytest.fail("it went on")
+
+
+def test_a_stop_while_a_dataclass_is_made_has_the_exit_code_of_any_other(tmp_path: Path) -> None:
+    """Its methods are made by exec, and an interrupt within exec had ``python -m`` end by SIGINT whatever code was returned."""
+    stopped = "command_list.run = lambda parsed: exec('raise KeyboardInterrupt')"
+    program = f"import sys\nfrom tactsim.cli import command_list, entry\n{stopped}\nsys.exit(entry.main(['list']))"
+    (tmp_path / "stopped.py").write_text(program)
+    paths = os.pathsep.join([str(tmp_path), str(Path(tactsim.__file__).parents[1])])
+    done = subprocess.run(
+        [sys.executable, "-m", "stopped"], capture_output=True, text=True, env={**os.environ, "PYTHONPATH": paths}
+    )
+    assert (done.returncode, done.stderr) == (130, "error: interrupted\n")
 
 
 def test_a_signal_that_the_caller_ignores_stays_ignored() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import random
@@ -20,6 +21,7 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
+import zarr
 from fork_server import forked_python
 from sweeps import TEXT, Inline, assert_same, content, run_sweep, small_store, sweep_file
 from zarr.storage import LocalStore
@@ -41,6 +43,7 @@ from tactsim.dataset.use.loading import load
 from tactsim.errors import CaseError, InputError, StorageError, TactsimError
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variable import Variable
+from tactsim.results.folder import claimed
 from tactsim.shipped import CASES
 
 TESTS = Path(__file__).parents[2]
@@ -222,6 +225,35 @@ def test_a_full_disk_ends_with_an_error_and_keeps_what_was_written(
     assert (going.tally.done > 0) == (room > 2_000)
     run_sweep(sweep, place, resume=True)
     assert check(place).findings == ()
+
+
+def test_a_disk_that_is_full_before_the_first_sample_is_not_called_damage(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The advice was to bring back a copy of a store that did not exist yet."""
+
+    def full(*_: object, **__: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr(zarr, "consolidate_metadata", full)
+    with (
+        pytest.raises(StorageError, match=r"^cannot write .*: No space left on device$"),
+        opened_run(load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"),
+    ):
+        pytest.fail("it was opened")
+    assert not (tmp_path / "s.zarr").exists()
+
+
+def test_nothing_new_is_put_into_a_store(whole: Path, tmp_path: Path) -> None:
+    """Its own check then called what a sweep or a run had put there foreign."""
+    kept = tmp_path / "kept.zarr"
+    shutil.copytree(whole, kept)
+    for place in (kept / "inner.zarr", kept / "force" / "inner.zarr"):
+        with pytest.raises(StorageError, match=r"inner\.zarr lies in the data set .*kept\.zarr; choose a place outside it"):
+            run_sweep(load_sweep(sweep_file(tmp_path)), place)
+        with pytest.raises(StorageError, match="lies in the data set"), claimed(place):
+            pytest.fail("it was claimed")
+    assert check(kept).findings == ()
 
 
 def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
