@@ -89,9 +89,17 @@ class Continuous(Distribution):
             return self.numbers.written(first + share * (second - first))
         if self.name == "log_uniform":
             return self.numbers.written(first * (second / first) ** share)
-        low, high = (scipy.special.ndtr((limit - first) / second) for limit in self.limits)
-        inner = float(np.clip(low + share * (high - low), np.finfo(float).tiny, 1 - np.finfo(float).epsneg))
-        return self.numbers.written(float(np.clip(first + second * scipy.special.ndtri(inner), *self.limits)))
+        begin, end = ((limit - first) / second for limit in self.limits)
+        normal = -_normal_quantile(1 - share, -end, -begin) if begin > 0 else _normal_quantile(share, begin, end)
+        return self.numbers.written(float(np.clip(first + second * normal, *self.limits)))
+
+
+def _normal_quantile(share: float, begin: float, end: float) -> float:
+    """Quantile of a standard normal distribution between two numbers, of which the first is in the lower half: probabilities near
+    one keep few digits."""
+    low, high = scipy.special.ndtr((begin, end))
+    inner = np.clip(low + share * (high - low), np.finfo(float).tiny, 1 - np.finfo(float).epsneg)
+    return float(scipy.special.ndtri(inner))
 
 
 @dataclass(frozen=True)
@@ -188,9 +196,9 @@ def _normal(entries: list[Any], written: dict[str, Any]) -> Distribution:
     if "within" not in written:
         return Continuous("normal", numbers)
     mean, low, high = measured([entries[0], *_listed("within", written["within"], 2)]).values
-    if low >= high or scipy.special.ndtr((high - mean) / numbers.values[1]) <= scipy.special.ndtr(
-        (low - mean) / numbers.values[1]
-    ):
+    begin, end = ((limit - mean) / numbers.values[1] for limit in (low, high))
+    begin, end = (-end, -begin) if begin > 0 else (begin, end)
+    if not scipy.special.ndtr(begin) < scipy.special.ndtr(end):
         raise InvalidQuantity(f"normal: within {shown(written['within'])} must increase and hold a part of the distribution")
     return Continuous("normal", numbers, (low, high))
 

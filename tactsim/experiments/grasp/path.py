@@ -18,6 +18,11 @@ from tactsim.mechanics.paths.history_path import EquilibriumProblem, TimedPath, 
 
 SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
+SMALL_CLOSING = 1e-2
+"""Closing over the height of the block below which pressures, and with them the penetration, are less in proportion.
+
+Why: the contact is as soft as the tissue's modulus would press it, which small closings never do. With a softness in proportion to
+their tolerance it was the stiffer the smaller they were, points stuck and slipped by turns, and a closing by 1 um found no way."""
 SWITCH_OF_HEIGHT = 0.05
 """Length over which a violated contact counts as much as the largest pressure, over the height of the block."""
 TOUCH = 0.02
@@ -62,12 +67,14 @@ def regularisation(experiment: GraspSetup) -> Augmentation:
     """How stiff the contact is."""
     tissue = experiment.block.tissue
     softest = shear_relaxation(tissue).instantaneous_modulus
-    softness = min(SOFTNESS * experiment.tolerance, SOFTNESS_OF_HEIGHT * experiment.block.size[2])
+    height, closing = experiment.block.size[2], experiment.loading.largest_displacement
+    smallness = max(1.0, SMALL_CLOSING * height / closing) if closing else 1.0
+    softness = min(SOFTNESS * experiment.tolerance * smallness, SOFTNESS_OF_HEIGHT * height)
     softness = min(softness, max(experiment.tolerance, SOFTNESS_SHARE * drawn_radius(experiment)))
     return Augmentation(
         experiment.tolerance,
         softest,
-        switch_length=SWITCH_OF_HEIGHT * experiment.block.size[2],
+        switch_length=SWITCH_OF_HEIGHT * height,
         softness=softness,
         flows=flows(tissue),
     )

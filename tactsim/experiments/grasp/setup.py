@@ -37,6 +37,9 @@ PENETRATION = 2e-4
 PENETRATION_OF_CLOSING = 1e-2
 """That over a small closing, at most: multipliers leave most points with a tenth of the largest penetration."""
 
+SMALLEST_CLOSING = 1e-10
+"""Smallest closing over the height of the block: five digits are left of it in the places of nodes."""
+
 
 class Block(FrozenModel):
     """The block of tissue, from (0, 0, 0) on the lower jaw, x growing with the column of a taxel, y with its row.
@@ -273,6 +276,11 @@ class GraspSetup(FrozenModel):
         given, height = format_quantity(most, "m"), format_quantity(self.block.size[2], "m")
         if most >= self.block.size[2] / 2:
             raise ValueError(f"loading: each jaw closes by {given}; allowed: less than half the block's height {height}")
+        if 0 < most < SMALLEST_CLOSING * self.block.size[2]:
+            raise ValueError(
+                f"loading: each jaw closes by {given}, which is lost in round-off beside the block's height {height}; allowed: "
+                f"from {format_quantity(SMALLEST_CLOSING * self.block.size[2], 'm')} on"
+            )
         if least < 0:
             raise ValueError(
                 f"loading: the closing falls to {format_quantity(least, 'm')}, away from first touch; allowed: from 0"

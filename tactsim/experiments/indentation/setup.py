@@ -212,6 +212,11 @@ class IndentationSetup(FrozenModel):
         """Penetration over the body's radius that is allowed where the case does not say."""
         return 1e-4
 
+    @property
+    def contact_stiffness(self) -> float:
+        """How stiff the contact is within the tolerance, over the tissue."""
+        return 1.0
+
     def section(self) -> GradedSection:
         """The section of the specimen, its elements smallest at the edges of the body or around its tip."""
         specimen, shape, radius = self.specimen, self.body.contact_shape, self.contact_radius

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 
 from tactsim.dataset.sampling.sweep import filled, places_of
 from tactsim.errors import InvalidQuantity
@@ -38,6 +39,14 @@ def test_moments_are_those_of_the_distribution() -> None:
     truncated = drawn({"normal": [0, 1], "within": [0, 10]})
     assert truncated.min() >= 0
     assert truncated.mean() == pytest.approx(np.sqrt(2 / np.pi), rel=2e-3)
+
+
+def test_the_tail_of_a_normal_distribution_above_its_mean_mirrors_that_below() -> None:
+    """Probabilities near one have digits for three values beyond eight standard deviations."""
+    above, below = drawn({"normal": [0, 1], "within": [8, 12]}), drawn({"normal": [0, 1], "within": [-12, -8]})
+    np.testing.assert_allclose(above, -below[::-1], rtol=1e-14)
+    assert len(set(above)) == len(above)
+    assert above.mean() == pytest.approx(scipy.stats.truncnorm(8, 12).mean(), rel=1e-5)
 
 
 def test_a_wrong_law_would_be_noticed() -> None:

@@ -265,6 +265,17 @@ def test_smooth_intervals_are_the_union_of_all_breakpoints():
     assert [interval.sudden for interval in course] == [True, True, False]
 
 
+def test_small_closings_press_in_proportion():
+    """With a contact the stiffer the smaller the closing is, points stick and slip by turns, and none of these finds a way."""
+    stiffness = []
+    for closing in (1e-6, 1e-7):
+        ramp = pressed({"kind": "ramp", "to": closing, "duration": 1.0})
+        result = run(loading=ramp, mesh={"kind": "graded", "size": 10e-3, "edge_size": 3e-3, "growth": 1.0})
+        assert result.status.value == "converged"
+        stiffness.append(result.quantities["reaction_force"].value / closing)
+    assert stiffness[0] == pytest.approx(stiffness[1], rel=2e-3)  # penetration takes a thousandth
+
+
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
@@ -287,6 +298,7 @@ def test_smooth_intervals_are_the_union_of_all_breakpoints():
             "mesh.kind: graded: graded cells serve one lump beside tubes, .*; take kind: tetrahedra",
         ),
         ({"loading": pressed({"kind": "ramp", "to": 10e-3, "duration": 1.0})}, "less than half the block's height 20 mm"),
+        ({"loading": pressed({"kind": "ramp", "to": 1e-15, "duration": 1.0})}, "lost in round-off .* 20 mm; allowed: from 2 pm on"),
         ({"loading": pressed({"kind": "ramp", "to": -1e-3, "duration": 1.0})}, "falls to -1 mm"),
         ({"loading": pressed({"kind": "hold", "duration": 1.0})}, "nothing happens"),
         ({"loading": pressed({"kind": "jump", "to": 0.0, "duration": 1.0}, control="force")}, "must press all the time"),

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from tactsim.contact.annulus import Annulus
+from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.sphere import Sphere
 from tactsim.errors import CaseError
 from tactsim.experiments.indentation.indentation_3d import Indentation3D, MeshSettings3D
@@ -52,6 +53,19 @@ def test_it_stops_at_the_threshold():
     touched = thin().run()
     assert touched.status == "converged"
     assert touched.quantities["tissue_rise"].value == pytest.approx(0.05e-3, rel=1e-4)
+
+
+def test_small_displacements_press_in_proportion():
+    """With a contact the stiffer the smaller the displacement is, points stick and slip by turns, and neither finds a way."""
+    small = {"material": "icf_stable", "thickness": 4e-3, "radius": 8e-3}
+    settings = {"specimen": small, "body": Annulus(), "recess": 1e-3, "penetration_tolerance": None}
+    settings |= {"stop": "displacement", "steps": {}, "mesh": MeshSettings3D(finest=0.25e-3)}
+    stiffness = []
+    for displacement in (1e-6, 1e-7):
+        result = thin(**settings, contact=Coulomb(friction=0.4), displacement=displacement).run()
+        assert result.status == "converged"
+        stiffness.append(result.quantities["reaction_force"].value / displacement)
+    assert stiffness[0] == pytest.approx(stiffness[1], rel=2e-2)  # the fillet touches 20 um further in 3 mm
 
 
 def test_threshold_then_the_sensor_presses_too():
