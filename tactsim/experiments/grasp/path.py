@@ -21,8 +21,8 @@ SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 SMALL_CLOSING = 1e-2
 """Closing over the height of the block below which pressures, and with them the penetration, are less in proportion.
 
-Why: the contact is as soft as the tissue's modulus would press it, which small closings never do. With a softness in proportion to
-their tolerance it was the stiffer the smaller they were, points stuck and slipped by turns, and a closing by 1 um found no way."""
+Why: the softness is that under a pressure like the tissue's modulus, which small closings never reach. In proportion to their
+tolerance alone, contact was the stiffer the smaller they were; points stuck and slipped by turns, and 1 um found no way."""
 SWITCH_OF_HEIGHT = 0.05
 """Length over which a violated contact counts as much as the largest pressure, over the height of the block."""
 TOUCH = 0.02

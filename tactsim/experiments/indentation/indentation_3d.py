@@ -126,10 +126,10 @@ class Indentation3D(DisplacedSetup, Experiment):
 
     @property
     def contact_stiffness(self) -> float:
-        """How stiff the contact is within the tolerance, over the tissue: less under displacements so small that the tolerance is.
+        """How stiff the contact is within the tolerance, over the tissue: less where a small displacement makes the tolerance small.
 
-        Why: they press less in proportion. In a contact the stiffer the smaller they were, points stuck and slipped by turns, and
-        none below 1 um found a way."""
+        Why: it presses less in proportion. As stiff as under others, points stuck and slipped by turns, and 1 um found no way.
+        """
         usual = self._usual_penetration * self.contact_radius
         return default_penetration(usual, self.prescribed) / usual
 
