@@ -126,7 +126,7 @@ class Indentation3D(DisplacedSetup, Experiment):
 
     @property
     def contact_stiffness(self) -> float:
-        """How stiff the contact is within the tolerance, over the tissue: less where a small displacement makes the tolerance small.
+        """How stiff the contact is within the tolerance, over the tissue: less where displacements make the tolerance small.
 
         Why: it presses less in proportion. As stiff as under others, points stuck and slipped by turns, and 1 um found no way.
         """
