@@ -95,11 +95,9 @@ class Continuous(Distribution):
 
 
 def _normal_quantile(share: float, begin: float, end: float) -> float:
-    """Quantile of a standard normal distribution between two numbers, of which the first is in the lower half: probabilities near
-    one keep few digits."""
+    """Quantile of a standard normal distribution between two numbers, the first below its mean, as digits are lost near one."""
     low, high = scipy.special.ndtr((begin, end))
-    inner = np.clip(low + share * (high - low), np.finfo(float).tiny, 1 - np.finfo(float).epsneg)
-    return float(scipy.special.ndtri(inner))
+    return float(scipy.special.ndtri(np.clip(low + share * (high - low), np.finfo(float).tiny, 1 - np.finfo(float).epsneg)))
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,10 @@ from tactsim.mechanics.paths.history_path import EquilibriumProblem, TimedPath, 
 SOFTNESS, SOFTNESS_OF_HEIGHT = 25.0, 2.5e-3
 """Penetration that the contact would have without multipliers, over the tolerance and at most over the height of the block."""
 SMALL_CLOSING = 1e-2
-"""Closing over the height of the block below which pressures, and with them the penetration, are less in proportion.
+"""Closing over the height of the block below which pressures are less in proportion, and so is the contact's pressure scale.
 
-Why: the softness is that under a pressure like the tissue's modulus, which small closings never reach. In proportion to their
-tolerance alone, contact was the stiffer the smaller they were; points stuck and slipped by turns, and 1 um found no way."""
+Why: in proportion to the tolerance alone, contact was the stiffer the smaller the closing; points stuck and slipped by turns, and
+1 um found no way."""
 SWITCH_OF_HEIGHT = 0.05
 """Length over which a violated contact counts as much as the largest pressure, over the height of the block."""
 TOUCH = 0.02
@@ -68,13 +68,13 @@ def regularisation(experiment: GraspSetup) -> Augmentation:
     tissue = experiment.block.tissue
     softest = shear_relaxation(tissue).instantaneous_modulus
     height, closing = experiment.block.size[2], experiment.loading.largest_displacement
-    smallness = max(1.0, SMALL_CLOSING * height / closing) if closing else 1.0
-    softness = min(SOFTNESS * experiment.tolerance * smallness, SOFTNESS_OF_HEIGHT * height)
+    part = min(1.0, closing / (SMALL_CLOSING * height)) if closing else 1.0
+    softness = min(SOFTNESS * experiment.tolerance, SOFTNESS_OF_HEIGHT * height)
     softness = min(softness, max(experiment.tolerance, SOFTNESS_SHARE * drawn_radius(experiment)))
     return Augmentation(
         experiment.tolerance,
-        softest,
-        switch_length=SWITCH_OF_HEIGHT * height,
+        part * softest,
+        switch_length=part * SWITCH_OF_HEIGHT * height,
         softness=softness,
         flows=flows(tissue),
     )

@@ -88,7 +88,8 @@ def _begun(setup: IndentationSetup) -> tuple[DisplacementPath | HistoryPath, Ind
 
 def started(setup: IndentationSetup, model: PressedModel, modulus: float) -> ContactEquilibrium:
     """The body at first touch of the undeformed tissue, whose contact is as stiff as a shear modulus in Pa."""
-    part = setup.contact_stiffness
+    small, displacement = setup.small_displacement * setup.contact_radius, setup.prescribed
+    part = min(1.0, displacement / small) if displacement and small else 1.0
     scale = Regularisation(setup.tolerance, part * modulus, switch_length=part * SWITCH_LENGTH * setup.contact_radius)
     body = setup.posed().body
     return model.start(body, model.touching_place(body), setup.contact, scale)

@@ -18,7 +18,6 @@ from tactsim.experiments.indentation.setup import Posed
 from tactsim.fem.paths.loading import StepControl
 from tactsim.interfaces import Experiment
 from tactsim.materials.mirrored import law_mirrors
-from tactsim.mechanics.contact.penetration_bounds import default_penetration
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.mesh.affordable import check_unknowns
 from tactsim.mesh.revolved import SweepSymmetry, largest_offset, shifted_outside, swept
@@ -62,6 +61,7 @@ class Indentation3D(DisplacedSetup, Experiment):
     if_slow: ClassVar[str] = (
         "; with a larger penetration_tolerance than {tolerance}, a larger mesh.finest or fewer mesh.sectors it takes less"
     )
+    small_displacement: ClassVar[float] = 0.05
     kind: Literal["indentation_3d"] = "indentation_3d"
     offset: NonNegative[Length] = 0.0
     """Distance along x of the body's reference point from the axis of the specimen."""
@@ -123,15 +123,6 @@ class Indentation3D(DisplacedSetup, Experiment):
     def _usual_penetration(self) -> float:
         """Penetration over the body's radius that is allowed where the case does not say."""
         return super()._usual_penetration if self.symmetry is SweepSymmetry.QUARTER else OBLIQUE_PENETRATION
-
-    @property
-    def contact_stiffness(self) -> float:
-        """How stiff the contact is within the tolerance, over the tissue: less where displacements make the tolerance small.
-
-        Why: it presses less in proportion. As stiff as under others, points stuck and slipped by turns, and 1 um found no way.
-        """
-        usual = self._usual_penetration * self.contact_radius
-        return default_penetration(usual, self.prescribed) / usual
 
     def control(self) -> StepControl:
         """Lengths of the load steps in m."""
