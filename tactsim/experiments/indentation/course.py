@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
@@ -27,6 +28,11 @@ from tactsim.units import format_quantity
 
 THRESHOLD_TOLERANCE = 1e-5
 """Tolerance of the displacement at the threshold, as a part of the recess."""
+SMALL_DISPLACEMENT = 0.05
+"""Displacement over the body's radius below which the penetration tolerance is in proportion to it, and pressures are less.
+
+Why: in proportion to the tolerance alone, contact was the stiffer the smaller the displacement. In 3D points stuck and slipped by
+turns, around the rim of a ball's contact they opened and closed, and 1 um found no way or took many short steps."""
 SWITCH_LENGTH = 0.03
 """Length, as a part of the body's radius, over which a violated contact counts as much as the largest contact pressure."""
 SPLIT_LENGTH = 2.0
@@ -86,13 +92,22 @@ def _begun(setup: IndentationSetup) -> tuple[DisplacementPath | HistoryPath, Ind
     return path, IndentationRecord(setup, model, path)
 
 
-def started(setup: IndentationSetup, model: PressedModel, modulus: float) -> ContactEquilibrium:
-    """The body at first touch of the undeformed tissue, whose contact is as stiff as a shear modulus in Pa."""
-    small, displacement = setup.small_displacement * setup.contact_radius, setup.prescribed
-    part = min(1.0, displacement / small) if displacement and small else 1.0
+def started(setup: IndentationSetup, model: PressedModel, modulus: float, part: float = 1.0) -> ContactEquilibrium:
+    """The body at first touch of the undeformed tissue, whose contact is as stiff as a ``part`` of a shear modulus in Pa."""
     scale = Regularisation(setup.tolerance, part * modulus, switch_length=part * SWITCH_LENGTH * setup.contact_radius)
     body = setup.posed().body
     return model.start(body, model.touching_place(body), setup.contact, scale)
+
+
+def _pressure_part(setup: IndentationSetup) -> float:
+    """How much less a body presses than under usual displacements: in proportion to a small one, a ball to its root, as by Hertz.
+
+    A flat body in a section counts as usual, since stiff contact costs nothing there.
+    """
+    share = min(1.0, (setup.prescribed or math.inf) / (SMALL_DISPLACEMENT * setup.contact_radius))
+    if setup.body.contact_shape.tip is not None:
+        return math.sqrt(share)
+    return share if setup.measure == "solid" else 1.0
 
 
 class DisplacementPath:
@@ -104,7 +119,8 @@ class DisplacementPath:
         self._followers: list[PathFollower[ContactEquilibrium]] = []
         self._size = setup.section().size()
         self._most = LARGEST_GROWTH * len(model.mesh.elements)
-        self.start = started(setup, model, min(material.shear_modulus for material in setup.specimen.materials))
+        modulus = min(material.shear_modulus for material in setup.specimen.materials)
+        self.start = started(setup, model, modulus, _pressure_part(setup))
 
     @property
     def rejected(self) -> int:

@@ -61,7 +61,6 @@ class Indentation3D(DisplacedSetup, Experiment):
     if_slow: ClassVar[str] = (
         "; with a larger penetration_tolerance than {tolerance}, a larger mesh.finest or fewer mesh.sectors it takes less"
     )
-    small_displacement: ClassVar[float] = 0.05
     kind: Literal["indentation_3d"] = "indentation_3d"
     offset: NonNegative[Length] = 0.0
     """Distance along x of the body's reference point from the axis of the specimen."""

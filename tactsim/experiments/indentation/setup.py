@@ -101,12 +101,6 @@ class IndentationSetup(FrozenModel):
     if_slow: ClassVar[str] = ""
     """What is added to the reason of a run whose time did not suffice: what takes less time than a tolerance of
     ``{tolerance}``."""
-    small_displacement: ClassVar[float] = 0.0
-    """Displacement over the body's radius below which pressures are less in proportion, and so is the contact's pressure scale.
-
-    Why: in proportion to the tolerance alone, contact was the stiffer the smaller the displacement. In 3D points stuck and slid
-    by turns, and 1 um found no way; in sections that costs nothing.
-    """
     specimen: Specimen
     """The tissue."""
     body: AnyBody = Annulus()

@@ -92,6 +92,19 @@ def test_the_profile_of_contact_pressure_is_that_of_hertz():
     assert thin().at_rest().scene_as(IndentationScene).contact is None
 
 
+def test_small_displacements_of_a_ball_are_small_copies_of_each_other():
+    """Force over displacement to the power of 3/2, as by Hertz. With a contact the stiffer the smaller the displacement, points
+    around the rim open and close by turns, so that small displacements take many short steps, and some find no way."""
+    ball = {"specimen": {"thickness": 4e-3}, "body": Sphere(radius=2e-3), "recess": None, "stop": "displacement", "steps": {}}
+    ball |= {"mesh": MeshSettings(growth=1.0, refinement=0.5), "contact": Coulomb(friction=0.4)}
+    stiffness = []
+    for displacement in (1e-6, 1e-7):
+        result = run(**ball, displacement=displacement)
+        assert len(result.steps) == 1
+        stiffness.append(result.quantities["reaction_force"].value / displacement**1.5)
+    assert stiffness[0] == pytest.approx(stiffness[1], rel=1e-2)  # the radius of contact is a hundredth of the thickness
+
+
 def test_a_threshold_says_what_a_fit_in_compression_leaves_open():
     def lines_of(**changes):
         setup = thin(specimen={"material": named_material("icf_stable").material, **changes.pop("specimen", {})}, **changes)
