@@ -34,6 +34,7 @@ from tactsim.registry import forget, kind_class
 from tactsim.results import Quantity, Result, Status
 from tactsim.results.document import document_text
 from tactsim.results.result import rows
+from tactsim.sensors.films.any_film import AnyFilm
 from tactsim.sensors.films.film import Film
 
 POINTS = 1e-3 * np.array([[0.0, 1.0, 2.0], [-3.0, -2.0, -1.0]])
@@ -292,6 +293,42 @@ def test_what_begin_returns_and_what_was_found_are_named_if_they_cannot_be_used(
         run(lambda: Course.computed(Findings("", quantities={"a": 1.0})))  # type: ignore[dict-item]
     with pytest.raises(InvalidQuantity, match=r"of force, time has columns of the lengths \[3, 4\]"):
         rows({"force": "N", "time": "s"}, (np.arange(3.0), np.arange(4.0)))
+
+
+def found(**findings: Any) -> Result:
+    return Beginning(kind="beginning", answer=lambda: Course.computed(Findings("", **findings))).run(None)
+
+
+def test_a_text_among_the_findings_is_one_and_what_is_no_text_is_refused() -> None:
+    """It was split into its letters, each a warning of its own."""
+    result = found(assumptions="dry contact", warnings="beyond the tests")
+    assert (result.assumptions, result.warnings) == (("dry contact",), ("beyond the tests",))
+    assert Result("made_up", Status.CONVERGED, "", warnings="beyond").warnings == ("beyond",)  # type: ignore[arg-type]
+    with pytest.raises(InvalidQuantity, match="assumptions of Beginning: None; needed: a tuple of texts"):
+        found(assumptions=None)
+    with pytest.raises(InvalidQuantity, match=r"warnings of a result of made_up: \(1\.0,\); needed"):
+        Result("made_up", Status.CONVERGED, "", warnings=(1.0,))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("method", ["assumptions", "warnings"])
+def test_a_film_that_says_a_text_where_a_tuple_belongs_is_refused(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its letters were as many assumptions of the result."""
+    reader: TypeAdapter[SensorFilm] = TypeAdapter(AnyFilm)
+    reader.validate_python(Film.example())
+    monkeypatch.setattr(Film, method, lambda *_: "thin")
+    with pytest.raises(ValidationError, match=rf"{method}\(\) of Film returned 'thin'; needed: a tuple of texts"):
+        reader.validate_python(Film.example())
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, [[1.0, np.nan]], np.array([np.inf]), np.float32("nan")])
+def test_a_run_that_found_what_is_not_finite_did_not_converge(value: Any) -> None:
+    """It was said to have converged."""
+    good = Quantity(1.0, "N", "")
+    result = found(quantities={"force": Quantity(value, "N", ""), "other": good})
+    assert result.status is Status.FAILED
+    assert result.reason == "not finite: force; needed: numbers, or None where there is none"
+    assert result["other"].value == 1.0
+    assert found(quantities={"force": Quantity([None, 1.0], "N", ""), "other": good}).status is Status.CONVERGED
 
 
 def test_a_result_that_could_not_be_read_again_is_not_written() -> None:
