@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
 from made_grasps import LAYOUT, NOISE, SIZE, plain_forces
+from matplotlib.figure import Figure
 from pydantic import TypeAdapter, ValidationError
 
 from tactsim.array import Array
 from tactsim.contact.checks import check_law, checked_normals
 from tactsim.errors import InputError, InvalidQuantity
+from tactsim.experiments.annulus.closed_form import ClosedForm
+from tactsim.experiments.annulus.figures.closed_form import ClosedFormFigures
 from tactsim.interfaces import ContactLaw, Experiment, Inclusion, Material, RigidBody, SensorFilm
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
@@ -30,6 +34,8 @@ from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.block import graded_misfit
 from tactsim.mesh.inclusions.sphere import Ball
+from tactsim.plotting.canvas import Plot
+from tactsim.presentation import load_result
 from tactsim.registry import forget, kind_class
 from tactsim.results import Quantity, Result, Status
 from tactsim.results.document import document_text
@@ -329,6 +335,30 @@ def test_a_run_that_found_what_is_not_finite_did_not_converge(value: Any) -> Non
     assert result.reason == "not finite: force; needed: numbers, or None where there is none"
     assert result["other"].value == 1.0
     assert found(quantities={"force": Quantity([None, 1.0], "N", ""), "other": good}).status is Status.CONVERGED
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (None, r"drawings\(\) of ClosedFormFigures returned None; needed: file name -> Drawing"),
+        (Figure(), r"drawings\(\) of ClosedFormFigures returned <Figure.*; needed: file name -> Drawing"),
+        ({"a.png": Figure()}, r"drawings\(\) of ClosedFormFigures returned \{'a.png': <Figure.*; needed: file name -> Drawing"),
+        ({"a.png": Plot(lambda: None)}, "what draws (a|this figure) returned a NoneType; needed: a figure of matplotlib"),  # type: ignore[arg-type,return-value]
+    ],
+)
+def test_figures_that_are_none_are_named_and_cost_no_result(
+    answer: Any, words: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Saving ended with a bare TypeError or AttributeError, and nothing was written."""
+    result = ClosedForm.example().run(None)
+    monkeypatch.setattr(ClosedFormFigures, "drawings", lambda self, result: answer)
+    with pytest.raises(InvalidQuantity, match=words):
+        result.plot()
+    with pytest.warns(UserWarning, match=words):
+        place = result.save(tmp_path / "kept")
+    kept = load_result(place)
+    assert kept.quantities == result.quantities
+    assert re.search(words, kept.warnings[-1])
 
 
 def test_a_result_that_could_not_be_read_again_is_not_written() -> None:
