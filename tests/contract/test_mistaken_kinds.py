@@ -252,6 +252,33 @@ def test_an_inclusion_whose_solids_are_no_tuple_is_refused(cls: type[Lone], word
     assert re.match(refusal, str(graded_misfit(SIZE, [cls(kind="lone")], [], BlockMeshSettings())))
 
 
+class Shrunk(Lone):
+    """A ball of a negative radius."""
+
+    def solids(self, size: Array) -> Any:
+        return (Ball(np.array(self.center), -4e-3),)
+
+
+class Torn(Lone):
+    """Fails by itself."""
+
+    def solids(self, size: Array) -> Any:
+        return int("x")
+
+
+@pytest.mark.parametrize(
+    ("cls", "words"),
+    [
+        (Shrunk, r"the semi-axes \[-0.004, -0.004, -0.004\] m; allowed: three positive lengths"),
+        (Torn, "invalid literal"),
+    ],
+)
+def test_an_inclusion_whose_solids_cannot_be_made_is_named(cls: type[Lone], words: str) -> None:
+    """A negative radius was meshed as a positive one, and an error in solids() did not say whose it was."""
+    with pytest.raises(InvalidQuantity, match=rf"solids\(\) of {cls.__name__} failed: {words}"):
+        check_inclusions(SIZE, [cls(kind="lone")], 0.5e-3)
+
+
 class Answer:
     """An estimator that gives what a test wants."""
 
