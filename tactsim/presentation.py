@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html as markup
+import warnings
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,7 +16,8 @@ from tactsim.interfaces.drawing import begin_all
 from tactsim.outside.files import named_path
 from tactsim.outside.text import one_line
 from tactsim.plotting import figures_for
-from tactsim.plotting.canvas import Figures, encoded, picture
+from tactsim.plotting.canvas import Figures, checked_figure, picture
+from tactsim.plotting.drawn import rendered_figures
 from tactsim.results import Quantity, Result, read_result, write_result
 from tactsim.results.quantity import format_values
 
@@ -56,15 +58,16 @@ def figures(result: Result, name: str | None = None) -> dict[str, Figure] | Figu
     ------
     UnknownName
         If there is no such figure, with the names of those there are.
+    InvalidQuantity
+        If what draws a figure of a kind of one's own returns something else.
     """
     drawings: dict[str, Any] = {Path(file).stem: draw for file, draw in figures_for(result).items()}
     if name is None:
         begin_all(drawings.values())
-        return Figures({stem: draw.figure() for stem, draw in drawings.items()})
+        return Figures({stem: checked_figure(draw.figure(), stem) for stem, draw in drawings.items()})
     if name not in drawings:
         raise UnknownName("figure", str(name), drawings)
-    figure: Figure = drawings[name].figure()
-    return figure
+    return checked_figure(drawings[name].figure(), name)
 
 
 def field_mesh(result: Result) -> pyvista.UnstructuredGrid:
@@ -90,6 +93,8 @@ def field_mesh(result: Result) -> pyvista.UnstructuredGrid:
 def save(result: Result, directory: str | Path, *, force: bool = False, fields: bool = True) -> Path:
     """Write the folder of a result, its fields only if they are asked for, and return its path.
 
+    A figure that cannot be drawn is left out, with a warning here and in the folder.
+
     Raises
     ------
     InputError
@@ -104,8 +109,10 @@ def save(result: Result, directory: str | Path, *, force: bool = False, fields: 
             raise InputError("the result does not know the case that it comes from; run a case or an experiment")
         case = Case(schema=SCHEMA, title=result.title, experiment=result.experiment)
         origin = case.provenance()
-    drawn = {f"{name}.png": encoded(figure) for name, figure in result.plot().items()}
-    kept = result if fields else replace(result, frames=())
+    drawn, faults = rendered_figures(result)
+    for fault in faults:
+        warnings.warn(fault, stacklevel=3)
+    kept = replace(result, warnings=(*result.warnings, *faults), frames=result.frames if fields else ())
     return write_result(kept, place, case_id=str(origin["case_id"]), provenance=origin, force=force, figures=drawn)
 
 

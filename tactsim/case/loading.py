@@ -38,6 +38,7 @@ Place = Callable[[Problem], str]
 
 KIND = "case file"
 SWEEP_SCHEMA, SWEEP_SECTION = "tactsim/sweep/1", "sweep"
+OF_PYTHON = "; a kind that is defined in Python is known in that process alone: load the case there with ts.load_case"
 """Schema of a sweep file, and its section that says how samples are drawn."""
 SWEEPS = "tactsim/sweep/"
 """How the schema of a file begins that `tactsim sweep` reads."""
@@ -151,6 +152,9 @@ def read_case_text(path: str | Path) -> str:
     except TooLarge:
         raise CaseError(f"{one_line(path)}: larger than {LIMITS[KIND]} bytes, which no case needs") from None
     except Unreadable as error:
+        if os.path.isfile(os.path.join(path, "zarr.json")):
+            show = f"tactsim show {one_line(path)} and tactsim data info {one_line(path)} say what it holds"
+            raise StorageError(f"{one_line(path)} is a data set, not a case; {show}") from None
         if os.path.exists(path) or not (name := shipped_name(path)):
             raise
         raise StorageError(f"{error}; tactsim comes with a case of this name: write {name}, without folder and ending") from None
@@ -225,7 +229,7 @@ def _kind_problems(document: Document) -> list[Problem]:
             unknown = ""
         except UnknownName:
             unknown = suggestion(kind, kind_names(Experiment))
-        path, message = (*path, "kind"), f"unknown kind {as_written(kind)}{unknown}; {_choices()}"
+        path, message = (*path, "kind"), f"unknown kind {as_written(kind)}{unknown}; {_choices()}{'' if unknown else OF_PYTHON}"
     return [Problem(path, document.line(path), message)]
 
 

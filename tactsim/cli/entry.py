@@ -47,6 +47,11 @@ COMMANDS = (
     command_schema,
     command_completion,
 )
+ONE_PLACE = {
+    "tactsim show": "; several results are laid side by side by: tactsim compare",
+    "tactsim data export": "; the place to write to follows --to",
+}
+"""What to do with a second place, of the commands that take one."""
 EXIT_CODES = """\
 exit codes:
   0    done
@@ -162,7 +167,8 @@ def _parsed(parser: argparse.ArgumentParser, words: Sequence[str]) -> argparse.N
     if unknown:
         named = [words[0]] if words[0] in [command.NAME for command in COMMANDS] else []
         command = " ".join(["tactsim", *named, *([parsed.action] if "action" in parsed else [])])
-        raise InputError(f"unrecognized arguments: {one_line(' '.join(unknown))}\nsee: {command} --help")
+        advice = "" if any(word.startswith("-") for word in unknown) else ONE_PLACE.get(command, "")
+        raise InputError(f"unrecognized arguments: {one_line(' '.join(unknown))}{advice}\nsee: {command} --help")
     return parsed
 
 

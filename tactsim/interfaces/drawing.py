@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, Protocol, runtime_checkable
 
 
+@runtime_checkable
 class Drawing(Protocol):
     """Draws one figure when it is wanted, such as `tactsim.plotting.canvas.Plot`."""
 

@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import time
 from abc import abstractmethod
-from collections.abc import Callable, Generator, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Generator, Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal, Self, TypeVar, cast, final
 
@@ -21,6 +20,7 @@ from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
 from tactsim.presenter import presenter
 from tactsim.progress import COMPILATION, Extent, quiet, step_bar
+from tactsim.results.checked import checked_texts, without_number
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import FieldFrame, Result, Status, StepRecord
 from tactsim.results.scene import Scene
@@ -243,13 +243,19 @@ def failure(error: Unfinished) -> str:
 
 
 def _result(experiment: Runnable, findings: Findings, timing: Mapping[str, float]) -> Result:
+    if findings.status is Status.CONVERGED and (lost := without_number(findings.quantities)):
+        findings = findings.ended(Status.FAILED, f"not finite: {', '.join(lost)}; needed: numbers, or None where there is none")
+    name = type(experiment).__name__
     return Result(
         kind=experiment.kind,
         status=findings.status,
         reason=findings.reason,
         quantities=findings.quantities,
-        assumptions=tuple(findings.assumptions),
-        warnings=(*experiment.doubts(), *findings.warnings),
+        assumptions=checked_texts(findings.assumptions, f"assumptions of {name}"),
+        warnings=(
+            *checked_texts(experiment.doubts(), f"doubts of {name}"),
+            *checked_texts(findings.warnings, f"warnings of {name}"),
+        ),
         timing=dict(timing),
         steps=tuple(findings.steps),
         units=dict(experiment.history_units if findings.units is None else findings.units),
@@ -290,11 +296,3 @@ def returned_by(steps: Generator[StepRecord, None, Made]) -> Made:
                 next(steps)
             except StopIteration as end:
                 return cast(Made, end.value)
-
-
-@contextmanager
-def timed(timing: dict[str, float], name: str) -> Iterator[None]:
-    """Adds the time in s that its block took, under a name; nothing if the block is left by an error."""
-    started = time.perf_counter()
-    yield
-    timing[name] = time.perf_counter() - started

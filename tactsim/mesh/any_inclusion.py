@@ -62,12 +62,16 @@ def checked_solids(inclusion: Inclusion, size: Array) -> tuple[Solid, ...]:
     Raises
     ------
     InvalidQuantity
-        If they are no tuple of one, or of an outer and an inner one.
+        If they are no tuple of one, or of an outer and an inner one, or their numbers are refused.
     """
-    solids: object = inclusion.solids(size)
+    name = type(inclusion).__name__
+    try:
+        solids: object = inclusion.solids(size)
+    except ValueError as error:
+        raise InvalidQuantity(f"solids() of {name} failed: {error}") from error
     if not isinstance(solids, tuple) or len(solids) not in (1, 2) or not all(isinstance(one, Solid) for one in solids):
         needed = "a tuple of a Solid, or of the outer and the inner one of a hollow body"
-        raise InvalidQuantity(f"solids() of {type(inclusion).__name__} returned {solids!r:.60}; needed: {needed}")
+        raise InvalidQuantity(f"solids() of {name} returned {solids!r:.60}; needed: {needed}")
     return solids
 
 

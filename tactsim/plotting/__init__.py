@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -10,13 +11,27 @@ if TYPE_CHECKING:
 
 
 def figures_for(result: Result) -> dict[str, Drawing]:
-    """File name -> drawing of every figure of a result, the main one first; empty for a kind without figures."""
-    from tactsim.errors import UnknownName  # here, since the renderer, a process of its own, does without them
-    from tactsim.interfaces import ResultFigures
+    """File name -> drawing of every figure of a result, the main one first; empty for a kind without figures.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the class of the kind's figures returns something else.
+    """
+    from tactsim.errors import (
+        InvalidQuantity,
+        UnknownName,
+        shown,
+    )  # here, since the renderer, a process of its own, does without them
+    from tactsim.interfaces import Drawing, ResultFigures
     from tactsim.registry import kind_class
 
     try:
         figures = kind_class(ResultFigures, result.kind)
     except UnknownName:
         return {}
-    return dict(figures().drawings(result))
+    drawings: object = figures().drawings(result)
+    if not isinstance(drawings, Mapping) or not all(isinstance(one, Drawing) for one in drawings.values()):
+        needed = "file name -> Drawing, such as {'a.png': Plot(lambda: a figure of matplotlib)} with tactsim.plotting.canvas.Plot"
+        raise InvalidQuantity(f"drawings() of {figures.__name__} returned {shown(drawings)}; needed: {needed}")
+    return dict(drawings)

@@ -20,6 +20,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
+from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Drawing, ResultFigures
 from tactsim.interfaces.drawing import png_source
 from tactsim.outside.text import one_line
@@ -105,8 +106,28 @@ def new_figure(width: float, height: float) -> Figure:
     return figure
 
 
+def checked_figure(drawn: object, name: str = "this figure") -> Figure:
+    """What a drawing returned, if it is a figure of matplotlib.
+
+    Raises
+    ------
+    InvalidQuantity
+        If it is none; ``name`` is how the message calls the figure.
+    """
+    if not isinstance(drawn, Figure):
+        raise InvalidQuantity(f"what draws {name} returned a {type(drawn).__name__}; needed: a figure of matplotlib")
+    return drawn
+
+
 def encoded(figure: Figure, form: str = "png") -> bytes:
-    """The figure as ``png``, ``svg`` or ``pdf``; the letters of a vector file stay letters, and no file holds the date."""
+    """The figure as ``png``, ``svg`` or ``pdf``; the letters of a vector file stay letters, and no file holds the date.
+
+    Raises
+    ------
+    InvalidQuantity
+        As `checked_figure`.
+    """
+    checked_figure(figure)
     content = io.BytesIO()
     if form == "png":
         figure.dpi = RESOLUTION

@@ -33,7 +33,7 @@ from tactsim.storage.building import (
 )
 from tactsim.storage.files import beside, naming, refuse_few_descriptors, write_bytes
 from tactsim.storage.locking import only_one
-from tactsim.storage.own_files import MANIFEST, manifest_of, names_in, read_manifest
+from tactsim.storage.own_files import MANIFEST, described, manifest_of, names_in, read_manifest
 
 RESULT_FILE = "result.json"
 _OWN_NAME = re.compile(
@@ -265,10 +265,10 @@ def _foreign(path: Path) -> list[str]:
         return [f"a manifest that cannot be read ({one_line(error, 200)})"]
     if manifest is not None:
         return manifest.foreign(path)
-    unknown = [name for name in names_in(path) if not _OWN_NAME.fullmatch(name)]
+    unknown = [name for name in sorted(names_in(path)) if not _OWN_NAME.fullmatch(name)]
     if not unknown and not (path / RESULT_FILE).is_file() and not (path / "validation.json").is_file():
         return ["no result of tactsim"]
-    return [f"{one_line(name)!r}, which tactsim did not write" for name in unknown]
+    return described(path, unknown)
 
 
 def _remove_own(path: Path) -> None:

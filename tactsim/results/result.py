@@ -13,6 +13,7 @@ import numpy as np
 from tactsim.errors import INTERRUPTED, ConvergenceError, InputError, InvalidQuantity, StorageError, UnknownName, shown
 from tactsim.presenter import presenter
 from tactsim.results.axes import coordinates, dimensions
+from tactsim.results.checked import checked_texts
 from tactsim.results.quantity import Quantity
 from tactsim.results.scene import Scene, UnreadableScene
 from tactsim.units import is_unit
@@ -105,7 +106,7 @@ class Result:
     Raises
     ------
     InvalidQuantity
-        If something else than a quantity is among them, or has a unit that is unknown.
+        If something else than a quantity is among them, or one has an unknown unit, or if assumptions or warnings are no texts.
     """
 
     kind: str
@@ -124,6 +125,8 @@ class Result:
     provenance: Mapping[str, Any] = field(default_factory=dict, compare=False)
 
     def __post_init__(self) -> None:
+        for name in ("assumptions", "warnings"):
+            object.__setattr__(self, name, checked_texts(getattr(self, name), f"{name} of a result of {self.kind}"))
         for name, one in self.quantities.items():
             if not isinstance(one, Quantity):
                 raise InvalidQuantity(f"{name} is a {type(one).__name__}; needed: Quantity(value, unit, description)")

@@ -11,7 +11,8 @@ import hashlib
 import json
 import os
 import re
-from pathlib import Path
+from collections.abc import Iterable
+from pathlib import Path, PurePosixPath
 from typing import Annotated
 
 from pydantic import BaseModel, ConfigDict, Field, Strict, ValidationError
@@ -57,8 +58,9 @@ class Manifest(BaseModel):
             If a file cannot be read.
         """
         unknown = sorted(names_in(folder) - self.files.keys() - {MANIFEST})
-        described = [f"{one_line(name)!r}, which tactsim did not write" for name in unknown]
-        return described + [f"{one_line(name)!r}, which was changed since tactsim wrote it" for name in self.changed(folder)]
+        return described(folder, unknown) + [
+            f"{one_line(name)!r}, which was changed since tactsim wrote it" for name in self.changed(folder)
+        ]
 
     def changed(self, folder: Path, *names: str) -> list[str]:
         """Files, all or those named, whose content is another than was written; one that is missing is not.
@@ -74,6 +76,20 @@ class Manifest(BaseModel):
     def _is_unchanged(self, folder: Path, name: str) -> bool:
         path, written = folder / name, self.files[name]
         return is_plain(folder, name) and path.stat().st_size == written.size and checksum(path) == written.sha256
+
+
+def described(folder: Path, unknown: Iterable[str]) -> list[str]:
+    """What in a folder does not belong to it, in words: files, or a folder within it that tactsim wrote for itself."""
+    words = []
+    for name in unknown:
+        above = (place.as_posix() for place in reversed(PurePosixPath(name).parents[:-1]))
+        within = next((place for place in above if (folder / place / MANIFEST).is_file()), None)
+        words.append(
+            f"{one_line(name)!r}, which tactsim did not write"
+            if within is None
+            else f"{one_line(within)!r}, which is another result or report of tactsim"
+        )
+    return list(dict.fromkeys(words))
 
 
 def manifest_of(folder: Path) -> bytes:

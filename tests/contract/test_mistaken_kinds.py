@@ -4,16 +4,20 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 import numpy as np
 import pytest
 from made_grasps import LAYOUT, NOISE, SIZE, plain_forces
+from matplotlib.figure import Figure
 from pydantic import TypeAdapter, ValidationError
 
 from tactsim.array import Array
 from tactsim.contact.checks import check_law, checked_normals
 from tactsim.errors import InputError, InvalidQuantity
+from tactsim.experiments.annulus.closed_form import ClosedForm
+from tactsim.experiments.annulus.figures.closed_form import ClosedFormFigures
 from tactsim.interfaces import ContactLaw, Experiment, Inclusion, Material, RigidBody, SensorFilm
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import Readings
@@ -30,10 +34,13 @@ from tactsim.mesh.any_inclusion import check_inclusions
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.block import graded_misfit
 from tactsim.mesh.inclusions.sphere import Ball
+from tactsim.plotting.canvas import Plot
+from tactsim.presentation import load_result
 from tactsim.registry import forget, kind_class
 from tactsim.results import Quantity, Result, Status
 from tactsim.results.document import document_text
 from tactsim.results.result import rows
+from tactsim.sensors.films.any_film import AnyFilm
 from tactsim.sensors.films.film import Film
 
 POINTS = 1e-3 * np.array([[0.0, 1.0, 2.0], [-3.0, -2.0, -1.0]])
@@ -245,6 +252,33 @@ def test_an_inclusion_whose_solids_are_no_tuple_is_refused(cls: type[Lone], word
     assert re.match(refusal, str(graded_misfit(SIZE, [cls(kind="lone")], [], BlockMeshSettings())))
 
 
+class Shrunk(Lone):
+    """A ball of a negative radius."""
+
+    def solids(self, size: Array) -> Any:
+        return (Ball(np.array(self.center), -4e-3),)
+
+
+class Torn(Lone):
+    """Fails by itself."""
+
+    def solids(self, size: Array) -> Any:
+        return int("x")
+
+
+@pytest.mark.parametrize(
+    ("cls", "words"),
+    [
+        (Shrunk, r"the semi-axes \[-0.004, -0.004, -0.004\] m; allowed: three positive lengths"),
+        (Torn, "invalid literal"),
+    ],
+)
+def test_an_inclusion_whose_solids_cannot_be_made_is_named(cls: type[Lone], words: str) -> None:
+    """A negative radius was meshed as a positive one, and an error in solids() did not say whose it was."""
+    with pytest.raises(InvalidQuantity, match=rf"solids\(\) of {cls.__name__} failed: {words}"):
+        check_inclusions(SIZE, [cls(kind="lone")], 0.5e-3)
+
+
 class Answer:
     """An estimator that gives what a test wants."""
 
@@ -292,6 +326,66 @@ def test_what_begin_returns_and_what_was_found_are_named_if_they_cannot_be_used(
         run(lambda: Course.computed(Findings("", quantities={"a": 1.0})))  # type: ignore[dict-item]
     with pytest.raises(InvalidQuantity, match=r"of force, time has columns of the lengths \[3, 4\]"):
         rows({"force": "N", "time": "s"}, (np.arange(3.0), np.arange(4.0)))
+
+
+def found(**findings: Any) -> Result:
+    return Beginning(kind="beginning", answer=lambda: Course.computed(Findings("", **findings))).run(None)
+
+
+def test_a_text_among_the_findings_is_one_and_what_is_no_text_is_refused() -> None:
+    """It was split into its letters, each a warning of its own."""
+    result = found(assumptions="dry contact", warnings="beyond the tests")
+    assert (result.assumptions, result.warnings) == (("dry contact",), ("beyond the tests",))
+    assert Result("made_up", Status.CONVERGED, "", warnings="beyond").warnings == ("beyond",)  # type: ignore[arg-type]
+    with pytest.raises(InvalidQuantity, match="assumptions of Beginning: None; needed: a tuple of texts"):
+        found(assumptions=None)
+    with pytest.raises(InvalidQuantity, match=r"warnings of a result of made_up: \(1\.0,\); needed"):
+        Result("made_up", Status.CONVERGED, "", warnings=(1.0,))  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize("method", ["assumptions", "warnings"])
+def test_a_film_that_says_a_text_where_a_tuple_belongs_is_refused(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its letters were as many assumptions of the result."""
+    reader: TypeAdapter[SensorFilm] = TypeAdapter(AnyFilm)
+    reader.validate_python(Film.example())
+    monkeypatch.setattr(Film, method, lambda *_: "thin")
+    with pytest.raises(ValidationError, match=rf"{method}\(\) of Film returned 'thin'; needed: a tuple of texts"):
+        reader.validate_python(Film.example())
+
+
+@pytest.mark.parametrize("value", [np.nan, np.inf, [[1.0, np.nan]], np.array([np.inf]), np.float32("nan")])
+def test_a_run_that_found_what_is_not_finite_did_not_converge(value: Any) -> None:
+    """It was said to have converged."""
+    good = Quantity(1.0, "N", "")
+    result = found(quantities={"force": Quantity(value, "N", ""), "other": good})
+    assert result.status is Status.FAILED
+    assert result.reason == "not finite: force; needed: numbers, or None where there is none"
+    assert result["other"].value == 1.0
+    assert found(quantities={"force": Quantity([None, 1.0], "N", ""), "other": good}).status is Status.CONVERGED
+
+
+@pytest.mark.parametrize(
+    ("answer", "words"),
+    [
+        (None, r"drawings\(\) of ClosedFormFigures returned None; needed: file name -> Drawing"),
+        (Figure(), r"drawings\(\) of ClosedFormFigures returned <Figure.*; needed: file name -> Drawing"),
+        ({"a.png": Figure()}, r"drawings\(\) of ClosedFormFigures returned \{'a.png': <Figure.*; needed: file name -> Drawing"),
+        ({"a.png": Plot(lambda: None)}, "what draws (a|this figure) returned a NoneType; needed: a figure of matplotlib"),  # type: ignore[arg-type,return-value]
+    ],
+)
+def test_figures_that_are_none_are_named_and_cost_no_result(
+    answer: Any, words: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Saving ended with a bare TypeError or AttributeError, and nothing was written."""
+    result = ClosedForm.example().run(None)
+    monkeypatch.setattr(ClosedFormFigures, "drawings", lambda self, result: answer)
+    with pytest.raises(InvalidQuantity, match=words):
+        result.plot()
+    with pytest.warns(UserWarning, match=words):
+        place = result.save(tmp_path / "kept")
+    kept = load_result(place)
+    assert kept.quantities == result.quantities
+    assert re.search(words, kept.warnings[-1])
 
 
 def test_a_result_that_could_not_be_read_again_is_not_written() -> None:

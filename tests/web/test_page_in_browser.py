@@ -460,7 +460,10 @@ def test_a_sample_is_picked(browser: webdriver.Chrome, tmp_path: Path) -> None:
             number.send_keys(Keys.CONTROL + "a", Keys.DELETE)
             number.send_keys(refused, Keys.ENTER)
             assert not browser.execute_script("return arguments[0].checkValidity()", number)
+            assert words(browser, "sample-words").endswith("is no sample; shown is 1, the last is 5")
         assert shows(browser, 1.1 * forces)
+        browser.execute_script("arguments[0].blur()", number)
+        assert number.get_property("value") == "1"  # the one that is shown, not the one that was refused
         number.send_keys(Keys.CONTROL + "a")
         number.send_keys("4", Keys.ENTER)
         until(lambda: "sample 4 is failed: ConvergenceError: residual <i>1</i>" in words(browser, "alerts"))

@@ -133,7 +133,8 @@ def sweep_of_document(
     try:
         if value.get("schema") != SWEEP_SCHEMA:
             stated = as_written(value["schema"]) if "schema" in value else "missing"
-            raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SWEEP_SCHEMA}'"))
+            instead = "; compute a case with: tactsim run" if value.get("schema") == CASE_SCHEMA else ""
+            raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SWEEP_SCHEMA}'{instead}"))
         settings = _settings(document, value.pop(SWEEP_SECTION, None), units=not checked)
         value["schema"] = CASE_SCHEMA
         places = tuple(places_of(value, ()))

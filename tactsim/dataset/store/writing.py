@@ -15,6 +15,7 @@ from tactsim.dataset.store.labels import add_label, labels_of, missing_labels
 from tactsim.dataset.store.opening import ARRAYS, STORE_SCHEMA, Store, reading
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
+from tactsim.outside.uninterrupted import uninterrupted
 from tactsim.storage.building import built_beside
 from tactsim.storage.files import naming, room, sync
 
@@ -34,19 +35,25 @@ def create(path: Path, variables: Sequence[Variable], samples: int, attributes: 
     ------
     StorageError
         If the place is taken or cannot be written, or a sample is larger than a chunk may be.
+    KeyboardInterrupt
+        If it is interrupted; nothing is then there.
     """
     import zarr
 
     per_chunk = chunk_samples(variables, samples)
     described = {**attributes, "schema": STORE_SCHEMA, ARRAYS: [variable.name for variable in variables]}
-    with built_beside(path) as place, naming(path):
+
+    def fill(place: Path) -> None:
         group = zarr.open_group(place, mode="w-", zarr_format=3, attributes=described)
         for variable in variables:
             _add(group, variable, samples, per_chunk)
         for name, labels in labels_of(variables).items():
             add_label(group, name, labels)
         consolidate(place)
-    return Store.open(path, writing=True)
+
+    with built_beside(path) as place, naming(path):
+        uninterrupted(lambda: fill(place))  # zarr goes on writing in a folder that is being removed
+    return uninterrupted(lambda: Store.open(path, writing=True))
 
 
 def set_attributes(store: Store, **attributes: Any) -> None:

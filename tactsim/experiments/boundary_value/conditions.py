@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, field_validator
 
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
+from tactsim.errors import InvalidQuantity, shown
 from tactsim.interfaces import RigidBody
 from tactsim.mechanics.paths.loading import Loading, pieces_of
 from tactsim.model import FrozenModel
 from tactsim.registry import Registered
-from tactsim.units import Angle, Force, ForcePerVolume, Length, Pressure, format_quantity
+from tactsim.units import Angle, Force, ForcePerVolume, Length, Pressure, format_quantity, parse_quantity
 
 AnyBody: Any = Annotated[RigidBody, Registered(RigidBody)]
 
@@ -201,6 +203,17 @@ class ForceCondition(FaceCondition, Components):
     """Component along z."""
     r: Force | None = None
     """Radial component on an axisymmetric body, the sum around the axis."""
+
+    @field_validator("x", "y", "z", "r", mode="before")
+    @classmethod
+    def _of_a_metre(cls, value: Any) -> Any:
+        if isinstance(value, str):
+            with suppress(InvalidQuantity):
+                parse_quantity(value, "N/m")
+                raise ValueError(
+                    f"{shown(value)} is a force per length; needed: a force, in plane strain that of a metre of depth"
+                )
+        return value
 
 
 class BodyForceCondition(Condition, Components):

@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field, model_validator
 
+from tactsim.deadline import timed
 from tactsim.experiments.dma.report import HISTORY_UNITS, DmaFinding, DmaReport
 from tactsim.experiments.dma.source import MeasuredDma, SignalsDma, SyntheticDma, SyntheticSignals
 from tactsim.identification.dma_bands import genetic_band, least_squares_band
@@ -16,7 +17,7 @@ from tactsim.identification.dma_determined import determination
 from tactsim.identification.dma_genetic import GeneticSettings, fit_genetic
 from tactsim.identification.dma_least_squares import fit_least_squares
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import Course, timed
+from tactsim.interfaces.run import Course
 from tactsim.results.result import StepRecord
 from tactsim.units import NonNegative
 

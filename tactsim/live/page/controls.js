@@ -13,7 +13,7 @@ function option(value, words) {
 
 export class Controls {
   constructor(send, redraw, turn) {
-    Object.assign(this, { send, unit: "N", steps: [], step: 0, playing: false });
+    Object.assign(this, { send, unit: "N", sample: 0, steps: [], step: 0, playing: false });
     get("controls").addEventListener("submit", (event) => event.preventDefault());
     get("units").addEventListener("change", (event) => { this.unit = event.target.value; redraw(); });
     get("estimators").addEventListener("change", (event) => send({ do: "estimator", name: event.target.value }));
@@ -22,7 +22,8 @@ export class Controls {
     get("slider").addEventListener("input", (event) => send({ do: "show", step: Number(event.target.value) }));
     get("previous").addEventListener("click", () => send({ do: "sample", move: -1 }));
     get("next").addEventListener("click", () => send({ do: "sample", move: 1 }));
-    get("number").addEventListener("change", ({ target }) => target.reportValidity() && send({ do: "sample", number: Number(target.value) }));
+    get("number").addEventListener("change", ({ target }) => this.#pick(target));
+    get("number").addEventListener("blur", ({ target }) => { if (!target.validity.valid) target.value = this.sample; });
     for (const id of ["split", "status"]) get(id).addEventListener("change", () => this.#filter());
     for (const button of document.querySelectorAll("[data-turn]")) {
       button.addEventListener("click", () => turn(button.dataset.turn));
@@ -59,7 +60,7 @@ export class Controls {
     get("source").value = message.source;
     if (!message.sample) return;
     const { number, split, status, chosen, state } = message.sample;
-    if (number !== null) get("number").value = number;
+    if (number !== null) this.sample = get("number").value = number;
     get("split").value = split;
     get("status").value = status;
     get("sample-words").textContent = `${number === null ? "none" : `${state.split}, ${state.status}`}; ${chosen} to choose from`;
@@ -91,6 +92,11 @@ export class Controls {
   }
 
   toggle() { this.send({ do: this.playing ? "pause" : "play" }); }
+
+  #pick(field) {
+    if (field.reportValidity()) return this.send({ do: "sample", number: Number(field.value) });
+    get("sample-words").textContent = `${field.value || "this"} is no sample; shown is ${this.sample}, the last is ${field.max}`;
+  }
 
   #filter() { this.send({ do: "filter", split: get("split").value, status: get("status").value }); }
 

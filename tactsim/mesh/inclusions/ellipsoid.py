@@ -9,6 +9,7 @@ import scipy
 
 from tactsim.analytic.sphere_points import sphere_points
 from tactsim.array import Array
+from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import BallImage, Point, Solid, Triangles
 from tactsim.mesh.solid import outward
@@ -50,9 +51,17 @@ class Ellipsoid(Inclusion):
 
 
 class EllipsoidSolid(Solid):
-    r"""The ellipsoid ``|A^{-1} R^T (x - c)| <= 1`` with semi-axes A, rotation R (3, 3) and centre c."""
+    r"""The ellipsoid ``|A^{-1} R^T (x - c)| <= 1`` with semi-axes A, rotation R (3, 3) and centre c.
+
+    Raises
+    ------
+    InvalidQuantity
+        If the semi-axes are not three positive lengths in m.
+    """
 
     def __init__(self, center: Array, semi_axes: Array, turn: Array):
+        if np.shape(semi_axes) != (3,) or not (np.isfinite(semi_axes).all() and (semi_axes > 0).all()):
+            raise InvalidQuantity(f"the semi-axes {np.asarray(semi_axes).tolist()} m; allowed: three positive lengths")
         self.center, self.semi_axes, self.turn = center, semi_axes, turn
         self.patches = (self.project,)
 

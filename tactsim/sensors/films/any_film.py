@@ -4,10 +4,23 @@ from __future__ import annotations
 
 from typing import Annotated
 
+from pydantic import AfterValidator
+
 from tactsim.interfaces import SensorFilm
 from tactsim.registry import Registered
 
-AnyFilm = Annotated[SensorFilm, Registered(SensorFilm, default="film")]
+
+def _checked(film: SensorFilm) -> SensorFilm:
+    """The film, if what it says of itself is texts: the letters of one would be as many assumptions."""
+    by_method = {"assumptions": film.assumptions(), "warnings": film.warnings(film.largest_force)}
+    for method, texts in by_method.items():
+        if not isinstance(texts, tuple | list) or not all(isinstance(one, str) for one in texts):
+            returned = f"{method}() of {type(film).__name__} returned {texts!r:.60}"
+            raise ValueError(f"{returned}; needed: a tuple of texts, such as ('a text',)")
+    return film
+
+
+AnyFilm = Annotated[SensorFilm, Registered(SensorFilm, default="film"), AfterValidator(_checked)]
 """Pydantic type of a film of any kind."""
 ConductingFilm = Annotated[
     SensorFilm,
@@ -17,5 +30,6 @@ ConductingFilm = Annotated[
         default="film",
         unfit="has no conductance, which is what a voltage divider reads",
     ),
+    AfterValidator(_checked),
 ]
 """Pydantic type of a film that a divider can read."""

@@ -138,7 +138,11 @@ def test_the_missing_experiment_is_told(case_file: Path) -> None:
         ("experiment.friction", "override experiment.friction: 'experiment.friction' is not of the form path.to.key=value"),
         ("friction=1", "override friction: unknown key (did you mean 'experiment.friction'?); allowed: schema, title, "),
         ("experiment=null", "override experiment: null is not a mapping with a 'kind'; choices: pretence"),
-        ("experiment.kind=x", "override experiment.kind: unknown kind 'x'; choices: pretence"),
+        (
+            "experiment.kind=x",
+            "override experiment.kind: unknown kind 'x'; choices: pretence; a kind that is defined in Python is known in that "
+            "process alone: load the case there with ts.load_case",
+        ),
         ("schema=tactsim/case/9", "override schema: the version 'tactsim/case/9' is not supported"),
     ],
 )
@@ -177,6 +181,15 @@ def test_unreadable_files(tmp_path: Path, pretended: None) -> None:
     for path in (tmp_path, tmp_path / "missing.yaml", tmp_path / "dangling.yaml", tmp_path / ("x" * 4096), "a\0b"):
         with pytest.raises(StorageError, match="cannot read the case file"):
             load_case(path)
+
+
+def test_a_data_set_is_no_case_and_its_commands_are_named(tmp_path: Path) -> None:
+    (tmp_path / "lumps.zarr").mkdir()
+    (tmp_path / "lumps.zarr" / "zarr.json").write_text("{}", encoding="utf-8")
+    with pytest.raises(
+        StorageError, match=r"lumps.zarr is a data set, not a case; tactsim show \S+ and tactsim data info \S+ say"
+    ):
+        load_case(tmp_path / "lumps.zarr")
 
 
 def test_a_mapping_is_a_case_and_refused_in_the_words_of_a_file(pretended: None) -> None:

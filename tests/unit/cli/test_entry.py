@@ -78,6 +78,10 @@ def test_an_unknown_option_leads_to_the_help_of_its_command(capsys: pytest.Captu
     assert capsys.readouterr().err == "error: unrecognized arguments: --sett x=1\nsee: tactsim run --help\n"
     assert main(["data", "export", "store", "--out", "x"]) == 2
     assert capsys.readouterr().err == "error: unrecognized arguments: --out x\nsee: tactsim data export --help\n"
+    assert main(["data", "export", "store", "out.h5"]) == 2
+    assert "arguments: out.h5; the place to write to follows --to\nsee" in capsys.readouterr().err
+    assert main(["show", "a", "b"]) == 2
+    assert "arguments: b; several results are laid side by side by: tactsim compare\nsee" in capsys.readouterr().err
     assert main(["--sett"]) == 2
     assert capsys.readouterr().err.endswith("see: tactsim --help\n")
 

@@ -169,7 +169,8 @@ def test_a_rule_about_a_label_of_several_numbers_is_refused(tmp_path: Path) -> N
 @pytest.mark.parametrize(
     ("old", "new", "words"),
     [
-        ("tactsim/sweep/1", "tactsim/sweep/2", "a sweep begins with 'schema: tactsim/sweep/1'"),
+        ("tactsim/sweep/1", "tactsim/sweep/2", "a sweep begins with 'schema: tactsim/sweep/1'$"),
+        ("tactsim/sweep/1", "tactsim/case/1", "'schema: tactsim/sweep/1'; compute a case with: tactsim run$"),
         ("uniform: [1 mm, 2.5 mm]", "uniform: [1 mm, 2.5 kPa]", r"sweep.yaml:6: experiment.inner_radius: .*wrong dimension"),
         ("kind: neo_hookean", "kind: neo_hokean", "unknown kind|neo_hookean"),
         ("inner_radius:", "iner_radius:", "did you mean 'inner_radius'"),

@@ -34,6 +34,7 @@ from tactsim.dataset.running.executors import Executor, LocalWorkers
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.sampling.drawing import drawn_specimen, noise_seed, used_seed
 from tactsim.dataset.sampling.sweep import Sweep, load_sweep
+from tactsim.dataset.store import writing
 from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import chunk_samples, set_attributes
@@ -53,6 +54,26 @@ TESTS = Path(__file__).parents[2]
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A store that nothing disturbed."""
     return small_store(tmp_path_factory.mktemp("whole"))
+
+
+def test_an_interruption_waits_until_a_store_is_made_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """zarr's thread went on writing into what was removed, which then stood in the way as not of tactsim."""
+    variables = [Variable(name, "1", name, "reading") for name in ("one", "two", "three")]
+    added = []
+
+    def interrupted(*of_one: Any) -> None:
+        if not added:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.1)
+        add(*of_one)
+        added.append(of_one[1].name)
+
+    add = writing._add
+    monkeypatch.setattr(writing, "_add", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        writing.create(tmp_path / "s.zarr", variables, 4, {})
+    assert added == ["one", "two", "three"]
+    assert os.listdir(tmp_path) == []
 
 
 def test_xarray_opens_it_without_our_code(whole: Path) -> None:

@@ -8,9 +8,10 @@ from typing import Any, ClassVar, Literal
 
 import pytest
 
+from tactsim.deadline import timed
 from tactsim.errors import Collapsed, ConvergenceError, InputError, InvalidQuantity, OutOfMemory, OutOfTime, UnknownName
 from tactsim.interfaces import Experiment
-from tactsim.interfaces.run import NO_MEMORY, Course, Findings, returned_by, run_within_another, timed
+from tactsim.interfaces.run import NO_MEMORY, Course, Findings, returned_by, run_within_another
 from tactsim.registry import forget, kinds
 from tactsim.results.quantity import Quantity
 from tactsim.results.result import Result, Status, StepRecord, rows

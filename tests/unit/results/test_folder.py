@@ -90,6 +90,16 @@ def test_a_folder_with_other_files_never_gives_way(tmp_path: Path, name: str, ma
     assert place.exists()
 
 
+@pytest.mark.parametrize("make", [make_result, make_without_manifest, Path.mkdir])
+def test_another_result_within_a_folder_is_named_as_one(tmp_path: Path, make: Callable[[Path], None]) -> None:
+    """It was said of its files that tactsim did not write them."""
+    make(tmp_path / "out")
+    publish(tmp_path / "out" / "second")
+    with pytest.raises(StorageError, match=r"holds 'second', which is another result or report of tactsim; move"):
+        publish(tmp_path / "out", replace=True)
+    assert mark_of(tmp_path / "out" / "second") == "new"
+
+
 def test_a_file_that_somebody_changed_never_gives_way(tmp_path: Path) -> None:
     make_result(tmp_path / "out")
     (tmp_path / "out" / "result.json").write_text("my notes", encoding="utf-8")

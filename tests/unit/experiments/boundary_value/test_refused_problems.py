@@ -57,6 +57,11 @@ TURNED = {"kind": "rotation", "face": "top", "angle": 1.0, "sliding": "in_plane"
             "asked.number.at",
             "lies outside the body, where x",
         ),
+        (
+            {"conditions": [{"kind": "force", "face": "top", "y": "10 N/m"}]},
+            "conditions.0.y",
+            "'10 N/m' is a force per length; needed: a force, in plane strain that of a metre of depth",
+        ),
         ({"asked": asked("force", face="roof", component="x")}, "asked.number.face", "no face 'roof'"),
         (
             {"asked": {"2nd-force": {"kind": "volume"}}},
