@@ -9,6 +9,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.contact.penalty import Augmentation, Regularisation
+from tactsim.contact.stick import Stick
 from tactsim.errors import Collapsed, ConvergenceError, TooShort
 from tactsim.fem.assembly.body import Body, Kinematics
 from tactsim.fem.assembly.external_forces import FollowerLoad
@@ -106,7 +107,7 @@ def contact_equilibrium(
             raise Collapsed(
                 f"{collapsed}, and no step leads on: the mesh is too coarse there, or the load too large; {error}"
             ) from error
-        for another_way in (_softened, _approached, _by_displacement):
+        for another_way in (_softened, _approached, _by_displacement, _from_stick):
             if reached := another_way(problem, state, load, guess, action):
                 return reached
         if not 0 < load - state.load <= SNAP_STEP * load:
@@ -167,6 +168,27 @@ def _by_displacement(
         return _equilibrium(problem, state.expecting(near.contacts), near.load, near.unknowns, action, from_guess=True)
     except ConvergenceError:
         return None
+
+
+def _from_stick(
+    problem: Problem, state: ContactEquilibrium, load: float, guess: Array, action: Action
+) -> ContactEquilibrium | None:
+    """The first state with augmented contact, found from that in which nothing slips; None if it is not, or there is no friction.
+
+    Why: friction holds a thin block between jaws nearly all over, so that it presses a hundred times as hard in the middle as it
+    would without. On the way there from rest, points stuck and slipped by turns: blocks thinner than a tenth of their width found
+    none (friction 0.3 to 1). From stick, 19 linear systems suffice where 113 had led nowhere.
+    """
+    friction = state.regularisation.augments and any(contact.pair.has_friction for contact in state.contacts)
+    if not friction or any(contact.state.pressure.any() for contact in state.contacts):
+        return None
+    sticking = tuple(replace(contact, pair=replace(contact.pair, law=Stick())) for contact in state.contacts)
+    try:
+        stuck = _equilibrium(problem, replace(state, contacts=sticking), load, guess, action)
+        reached = _equilibrium(problem, state.expecting(stuck.contacts), stuck.load, stuck.unknowns, action, from_guess=True)
+    except ConvergenceError:
+        return None
+    return replace(reached, iterations=stuck.iterations + reached.iterations)
 
 
 def _after_snap(problem: Problem, state: ContactEquilibrium, load: float, action: Action) -> ContactEquilibrium:

@@ -265,6 +265,16 @@ def test_smooth_intervals_are_the_union_of_all_breakpoints():
     assert [interval.sudden for interval in course] == [True, True, False]
 
 
+def test_thin_blocks_are_held_by_friction():
+    """Found from stick. The force of a block a twentieth as thick as wide is near that of a glued one."""
+    thin = {"block": {"size": (20e-3, 20e-3, 1e-3), "tissue": SOFT}, "matrix": {"pitch": 6e-3, "size": 5e-3}}
+    thin |= {"mesh": FEW | {"cells": (6, 6, 2)}, "loading": pressed({"kind": "ramp", "to": 20e-6, "duration": 1.0})}
+    held, glued = (run(**thin, contact=law) for law in ({"kind": "coulomb", "friction": 0.6}, {"kind": "stick"}))
+    assert len(held.steps) == 1
+    force, largest = (result.quantities["reaction_force"].value for result in (held, glued))
+    assert 0.9 * largest < force < largest
+
+
 def test_small_closings_press_in_proportion():
     """With a contact the stiffer the smaller the closing is, points stick and slip by turns, and none of these finds a way."""
     stiffness = []
