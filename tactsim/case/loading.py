@@ -38,10 +38,11 @@ Place = Callable[[Problem], str]
 
 KIND = "case file"
 SWEEP_SCHEMA, SWEEP_SECTION = "tactsim/sweep/1", "sweep"
-OF_PYTHON = "; a kind that is defined in Python is known in that process alone: load the case there with ts.load_case"
 """Schema of a sweep file, and its section that says how samples are drawn."""
 SWEEPS = "tactsim/sweep/"
 """How the schema of a file begins that `tactsim sweep` reads."""
+OF_PYTHON = "; a kind that is defined in Python is known in that process alone: load the case there with ts.load_case"
+"""What may be wrong with a kind that is like none."""
 
 
 Overrides = Sequence[str] | Mapping[str, Any]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from pathlib import Path
 
+from tactsim import plotting
 from tactsim.errors import TactsimError
 from tactsim.interfaces.drawing import begin_all
 from tactsim.outside.defect_place import place_of
 from tactsim.outside.library_warnings import collected_warnings
 from tactsim.outside.text import one_line
-from tactsim.plotting import figures_for
 from tactsim.results import Result
 
 
@@ -18,7 +18,7 @@ def rendered_figures(result: Result, form: str = "png", *, main_only: bool = Fal
     """File name -> content of a result's figures, the main one first or alone, and warnings."""
 
     def drawings() -> Mapping[str, Callable[..., bytes]]:
-        figures: Mapping[str, Callable[..., bytes]] = figures_for(result)
+        figures: Mapping[str, Callable[..., bytes]] = plotting.figures_for(result)
         return dict(list(figures.items())[:1]) if main_only else figures
 
     return drawn_figures(drawings, form)
