@@ -10,6 +10,7 @@ from tactsim.experiments.grasp.lumen_pressure import lumen_history
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.materials.viscoelasticity import flows, shear_relaxation
+from tactsim.mechanics.contact.penetration_bounds import small_part
 from tactsim.mechanics.contact.penetration_effect import bonded_block_rate
 from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mechanics.models.pressed_body import PressedBody
@@ -67,10 +68,10 @@ def regularisation(experiment: GraspSetup) -> Augmentation:
     """How stiff the contact is."""
     tissue = experiment.block.tissue
     softest = shear_relaxation(tissue).instantaneous_modulus
-    height, closing = experiment.block.size[2], experiment.loading.largest_displacement
-    part = min(1.0, closing / (SMALL_CLOSING * height)) if closing else 1.0
+    height = experiment.block.size[2]
     softness = min(SOFTNESS * experiment.tolerance, SOFTNESS_OF_HEIGHT * height)
     softness = min(softness, max(experiment.tolerance, SOFTNESS_SHARE * drawn_radius(experiment)))
+    part = small_part(experiment.loading.largest_displacement, SMALL_CLOSING * height)
     return Augmentation(
         experiment.tolerance,
         part * softest,

@@ -19,6 +19,7 @@ from tactsim.interfaces import Material
 from tactsim.interfaces.run import Course, Findings
 from tactsim.materials.viscoelasticity import flows, shear_relaxation
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.contact.penetration_bounds import small_part
 from tactsim.mechanics.models.pressed_body import PressedBody
 from tactsim.mechanics.models.pressed_model import PressedModel
 from tactsim.mechanics.models.section_model import SectionModel
@@ -104,7 +105,7 @@ def _pressure_part(setup: IndentationSetup) -> float:
 
     A flat body in a section counts as usual, since stiff contact costs nothing there.
     """
-    share = min(1.0, (setup.prescribed or math.inf) / (SMALL_DISPLACEMENT * setup.contact_radius))
+    share = small_part(setup.prescribed, SMALL_DISPLACEMENT * setup.contact_radius)
     if setup.body.contact_shape.tip is not None:
         return math.sqrt(share)
     return share if setup.measure == "solid" else 1.0

@@ -34,6 +34,11 @@ def check_penetration(tolerance: float | None, lengths: Mapping[str, float | Non
         )
 
 
+def small_part(displacement: float | None, small: float) -> float:
+    """A prescribed displacement over one that counts as ``small``, both in m; 1 above it, or where none is prescribed."""
+    return min(1.0, displacement / small) if displacement else 1.0
+
+
 def default_penetration(usual: float, displacement: float | None, share: float = DEFAULT_SHARE) -> float:
     """The usual tolerance in m, or ``share`` of the displacement in m if that is prescribed and so small that it is less."""
     return min(usual, share * displacement) if displacement else usual
