@@ -53,6 +53,11 @@ class Relaxation(FrozenModel):
         return self
 
     @property
+    def when_constants_hold(self) -> str:
+        """``constants`` in words, "at once" or "in the end"."""
+        return "at once" if self.constants == "instantaneous" else "in the end"
+
+    @property
     def amplitudes(self) -> tuple[float, Array, Array]:
         """Equilibrium part, relaxing parts (n,) and their times (n,) in s, as multiples of the energy's own constants."""
         fractions, times = np.array(self.fractions), np.array(self.times)

@@ -18,9 +18,10 @@ def material_report(name: str, material: Material) -> str:
     entry = LIBRARY.get(name)
     lines = [f"{name} ({material.kind})", *_origin_lines(entry, material), "", "Constants"]
     lines += [f"  {label:<16} {value}" for label, value in _constants(material)]
+    when = "" if material.relaxation is None else f", {material.relaxation.when_constants_hold}"
     lines += [
         "",
-        f"Moduli at small strain{'' if material.relaxation is None else ', at once'}",
+        f"Moduli at small strain{when}",
         *_moduli_lines(material),
         *_relaxation_lines(material),
     ]

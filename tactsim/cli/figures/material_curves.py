@@ -35,7 +35,7 @@ LOST_COLOUR = "#d62728"
 def material_figure(material: Material, name: str) -> Figure:
     """Nominal stress against stretch in uniaxial, equibiaxial and planar loading, stable range shaded, lost range marked.
 
-    Of a material that relaxes it is the stress at once, and says so.
+    Of a material that relaxes it is the stress when its constants hold, at once or in the end, and says so.
     """
     report = stability_range(material)
     figure = Figure(figsize=(10.5, 3.9), layout="constrained")
@@ -44,7 +44,7 @@ def material_figure(material: Material, name: str) -> Figure:
     stresses = {path: nominal_stress(material, path, stretch) for path in PATHS}
     unit, factor = pressure_unit(np.concatenate(list(stresses.values())))
     axes = figure.subplots(1, len(PATHS), squeeze=False)[0]
-    label = "nominal stress" if material.relaxation is None else "nominal stress at once"
+    label = "nominal stress" + ("" if material.relaxation is None else f" {material.relaxation.when_constants_hold}")
     for axis, (path, stress) in zip(axes, stresses.items(), strict=True):
         _draw_path(axis, stretch, stress * factor, report.paths[path], label)
         axis.set_title(path, loc="left")
@@ -59,10 +59,11 @@ def material_figure(material: Material, name: str) -> Figure:
 
 def _modulus_words(material: Material) -> str:
     """The shear modulus, of a material that relaxes at once and in the end."""
-    first = f"G = {format_quantity(material.shear_modulus, 'Pa')}"
+    shear = shear_relaxation(material)
+    first = f"G = {format_quantity(shear.instantaneous_modulus, 'Pa')}"
     if material.relaxation is None:
         return first
-    return f"{first} at once, {format_quantity(shear_relaxation(material).equilibrium_modulus, 'Pa')} in the end"
+    return f"{first} at once, {format_quantity(shear.equilibrium_modulus, 'Pa')} in the end"
 
 
 def fit_figure(curve: UniaxialCurve, fits: Iterable[UniaxialFit], name: str) -> Figure:

@@ -17,8 +17,10 @@ from tactsim.interfaces import Material
 from tactsim.materials.homogeneous import PATHS
 from tactsim.materials.library import named_material
 from tactsim.materials.linear_elastic import LinearElastic
+from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.plotting.canvas import encoded
 from tactsim.registry import kinds
+from tactsim.relaxation import Relaxation
 
 SHIPPED = {name: named_material(name).material for name in ("b1a_printed", "icf_stable")}
 QUICK = ("b1a_printed", "linear_elastic", "mooney_rivlin_5")
@@ -40,6 +42,14 @@ def test_a_material_that_relaxes_is_drawn_at_once_and_says_so() -> None:
     assert figure.get_suptitle() == "atrial (neo_hookean), incompressible, G = 18.818 MPa at once, 195.15 Pa in the end"
     assert figure.axes[0].get_ylabel() == "nominal stress at once in MPa"
     assert "nominal stress at once" in [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+def test_constants_that_hold_in_the_end_are_drawn_as_such() -> None:
+    """The figure gave both moduli as the one in the end, and the stress as that at once."""
+    relaxation = Relaxation(fractions=(0.5,), times=(2.0,), constants="equilibrium")
+    figure = material_figure(NeoHookean(c10=1000.0, relaxation=relaxation), "mine")
+    assert figure.get_suptitle() == "mine (neo_hookean), incompressible, G = 4 kPa at once, 2 kPa in the end"
+    assert figure.axes[0].get_ylabel() == "nominal stress in the end in kPa"
 
 
 @pytest.mark.parametrize(

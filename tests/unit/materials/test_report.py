@@ -63,4 +63,14 @@ def test_relaxation_is_reported_with_its_times():
     assert "shear G at once    2 kPa" in text
     assert "shear G in the end 1.5 kPa" in text
     assert "0.25               relaxes in 2 s" in text
+    assert "small strain, at once" in text
     assert "Relaxation" not in material_report("mine", NeoHookean(c10=1000.0))
+
+
+def test_constants_that_hold_in_the_end_are_not_those_at_once():
+    """The same report gave 2 kPa as the shear modulus at once, and 4 kPa a few lines below."""
+    relaxation = Relaxation(fractions=(0.5,), times=(2.0,), constants="equilibrium")
+    text = material_report("mine", NeoHookean(c10=1000.0, relaxation=relaxation))
+    assert "Moduli at small strain, in the end\n  shear G          2 kPa" in text
+    assert "shear G at once    4 kPa" in text
+    assert "shear G in the end 2 kPa" in text
