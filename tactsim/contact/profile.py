@@ -30,8 +30,9 @@ class Revolved(RigidBody):
         axial[2] = 1.0
         distance, normal, hessian = self.profile_distance(np.stack([radius, x[2]]))
         basis = np.stack([radial, axial])
-        lifted = np.einsum("in,ian,jbn,ijn->abn", np.ones_like(normal), basis, basis, hessian)
-        lifted += np.where(radius > 0, normal[0] / safe, 0.0) * hoop[:, None] * hoop[None, :]
+        lifted = np.einsum("ian,jbn,ijn->abn", basis, basis, hessian)
+        around = np.where(radius > 0, normal[0] / safe, hessian[0, 0])  # on the axis its limit
+        lifted += around * hoop[:, None] * hoop[None, :]
         return distance, np.einsum("in,ian->an", normal, basis), lifted
 
 

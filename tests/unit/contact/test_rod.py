@@ -39,3 +39,10 @@ def test_the_shank_is_a_cylinder():
 def test_a_radius_is_positive(radius):
     with pytest.raises(CaseError, match="radius"):
         Rod(radius=radius)
+
+
+def test_the_end_is_a_sphere_on_the_axis_too():
+    """Its curvature across x and y is one there; that across y was zero."""
+    below = np.array([[0.0], [0.0], [-1e-4]])
+    for mine, its in zip(Rod().signed_distance(below), Sphere(radius=RADIUS).signed_distance(below), strict=True):
+        np.testing.assert_allclose(mine, its, rtol=1e-12, atol=1e-18)
