@@ -183,10 +183,8 @@ class OutlinedRegion(Region):
             If the probability is not that of the outlines.
         """
         self._check(probability)
-        area = sum(
-            abs((line[:-1, 0] * line[1:, 1] - line[:-1, 1] * line[1:, 0]).sum()) / 2
-            for line in map(np.asarray, self.outlines.get("top", ()))
-        )
+        lines = map(np.asarray, self.outlines.get("top", ()))  # a hole is outlined the other way round
+        area = abs(sum((line[:-1, 0] * line[1:, 1] - line[:-1, 1] * line[1:, 0]).sum() for line in lines)) / 2
         heights = np.concatenate([np.asarray(line)[:, 1] for line in self.outlines.get("front", ())] or [np.zeros(1)])
         return 2 * float(np.sqrt(area / np.pi)), float(np.ptp(heights))
 

@@ -94,3 +94,14 @@ def test_a_kept_region_is_the_one_that_was_written():
             assert kept.contains(point) is inside
     with pytest.raises(InvalidQuantity, match=r"known: 0\.9"):
         kept.contains(mean, 0.5)
+
+
+def test_a_hole_of_a_kept_region_does_not_count():
+    """The hole was added to the plan instead of taken from it."""
+    axes = tuple(np.arange(count) * 1e-3 for count in (12, 12, 2))
+    weights = np.zeros((12, 12, 2))
+    weights[1:11, 1:11], weights[3:9, 3:9] = 1.0, 0.0
+    whole = CellRegion(axes, weights)
+    kept = OutlinedRegion(shadows(whole))
+    assert len(kept.shadow(2)) == 2
+    np.testing.assert_allclose(kept.sizes()[0], whole.sizes()[0], rtol=0.01)  # outlines cut the corners of cells
