@@ -24,16 +24,31 @@ TOLERANCE = 1e-2
 def check_law(law: Material) -> None:
     """Refuse a law whose stress, tangent or change of volume has a wrong shape, is no number, or does not fit its derivative.
 
+    They are looked at under a pressure as large as the shear modulus: without any, a term of it that is wrong is not seen.
+
     Raises
     ------
     InvalidQuantity
         Naming the class, the method, and what it must return.
     """
     F = np.eye(3)[:, :, None] + STRAIN * np.random.default_rng(0).uniform(-1.0, 1.0, (3, 3, STATES))
-    pressure = np.zeros(STATES)
+    pressure = np.full(STATES, law.shear_modulus)
     with np.errstate(all="ignore"):
         _compare(law, ("first_piola_kirchhoff", "tangent"), (3, 3), F, pressure)
         _compare(law, ("volume_change", "volume_change_gradient"), (), F)
+        _check_pressure(law, F, pressure)
+
+
+def _check_pressure(law: Material, F: Array, pressure: Array) -> None:
+    """Refuse a stress that does not contain the pressure times the slope of the volume change, which the weak form relies on."""
+    stress, without = (_returned(law, "first_piola_kirchhoff", (3, 3, STATES), F, one) for one in (pressure, 0 * pressure))
+    needed = pressure * _returned(law, "volume_change_gradient", (3, 3, STATES), F)
+    if np.abs(stress - without - needed).max() > TOLERANCE * np.abs(needed).max():
+        raise InvalidQuantity(
+            f"first_piola_kirchhoff of {type(law).__name__} must contain the pressure times its volume_change_gradient; under a "
+            f"pressure of {pressure[0]:.6g} Pa it grows by {np.abs(stress - without).max():.6g} Pa instead of "
+            f"{np.abs(needed).max():.6g} Pa at most"
+        )
 
 
 def _compare(law: Material, methods: tuple[str, str], leading: tuple[int, ...], F: Array, *pressure: Array) -> None:

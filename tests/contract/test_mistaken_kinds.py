@@ -82,6 +82,14 @@ WRONG_OWN_LAWS = {
         "volume_change_gradient of Own is not the derivative of its volume",
     ),
     "failure": (("tangent", lambda law, F, p: int("x")), "tangent of Own failed at strains of 5%: invalid literal"),
+    "pressure": (
+        ("first_piola_kirchhoff", lambda law, F, p: LinearElastic.first_piola_kirchhoff(law, F, 2 * p)),
+        "must contain the pressure times its volume_change_gradient",
+    ),
+    "slope of the pressure": (
+        ("tangent", lambda law, F, p: LinearElastic.tangent(law, F, p) + p),
+        "tangent of Own is not the derivative of its first_piola_kirchhoff",
+    ),
 }
 
 
