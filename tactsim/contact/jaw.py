@@ -8,6 +8,7 @@ import numpy as np
 from pydantic import model_validator
 
 from tactsim.array import Array
+from tactsim.contact.own_axes import in_turned_axes
 from tactsim.contact.profile import check_fillet, rounded_box
 from tactsim.contact.tilt import Tilt, tilt_matrix
 from tactsim.interfaces import RigidBody
@@ -56,11 +57,9 @@ class Jaw(RigidBody):
 
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
         """Distance in m, outward normal and Hessian in 1/m at points (3, n)."""
-        turn = self.rotation
         lower = np.array([-self.width / 2, -self.depth / 2, 0.0])
         upper = np.array([self.width / 2, self.depth / 2, self.thickness])
-        distance, normal, hessian = rounded_box(turn.T @ x, lower, upper, self.fillet)
-        return distance, turn @ normal, np.einsum("ij,jkn,lk->iln", turn, hessian, turn)
+        return in_turned_axes(self.rotation, lambda own: rounded_box(own, lower, upper, self.fillet), x)
 
     def face_coordinates(self, x: Array) -> Array:
         """Places (2, n) in m on the face, from its middle, of points (3, n)."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Callable
 
 import numpy as np
 
@@ -29,6 +30,13 @@ class BodyInOwnAxes(RigidBody):
 
     def signed_distance(self, x: Array) -> tuple[Array, Array, Array]:
         """Distance in m, outward normal and Hessian in 1/m at points (d, n)."""
-        turn = self.rotation
-        distance, normal, hessian = self.body.signed_distance(turn.T @ x)
-        return distance, turn @ normal, np.einsum("ij,jkn,lk->iln", turn, hessian, turn)
+        return in_turned_axes(self.rotation, self.body.signed_distance, x)
+
+
+def in_turned_axes(turn: Array, own: Callable[[Array], tuple[Array, Array, Array]], x: Array) -> tuple[Array, Array, Array]:
+    """Distance (n,) in m, normal (d, n) and Hessian (d, d, n) in 1/m at points (d, n) of what ``own`` gives in its own axes.
+
+    ``turn`` (d, d) turns these axes into those of the points.
+    """
+    distance, normal, hessian = own(turn.T @ x)
+    return distance, turn @ normal, np.einsum("ij,jkn,lk->iln", turn, hessian, turn)

@@ -12,6 +12,13 @@ import numpy as np
 from tactsim.array import Array
 
 IDENTITY = np.eye(3)
+STRAIN = 0.05
+"""Size of the sampled deformations: large against round-off, within the range of any law."""
+
+
+def sampled_deformations(count: int) -> Array:
+    """Deformation gradients (3, 3, count) without any symmetry, the same at every call."""
+    return IDENTITY[:, :, None] + STRAIN * np.random.default_rng(0).uniform(-1.0, 1.0, (3, 3, count))
 
 
 def cofactor(F: Array) -> Array:

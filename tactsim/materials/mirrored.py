@@ -6,11 +6,10 @@ import numpy as np
 
 from tactsim.errors import InputError
 from tactsim.interfaces import Material
+from tactsim.materials.kinematics import sampled_deformations
 
 STATES = 8
 """Deformations at which stresses are compared: an oblique fibre shows in any of them."""
-STRAIN = 0.05
-"""Their size: large against round-off, within the range of any law."""
 SAME_STRESS = 1e-6
 """Difference of two stresses over the largest that counts as none."""
 
@@ -20,7 +19,7 @@ def law_mirrors(material: Material, axis: int) -> bool:
 
     Compared at a few deformations. Isotropic laws do, and those with fibres along the axis or normal to it.
     """
-    F = np.eye(3)[:, :, None] + STRAIN * np.random.default_rng(0).uniform(-1.0, 1.0, (3, 3, STATES))
+    F = sampled_deformations(STATES)
     signs = np.ones(3)
     signs[axis] = -1.0
     flip = np.multiply.outer(signs, signs)[:, :, None]

@@ -10,11 +10,10 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces import Material
+from tactsim.materials.kinematics import STRAIN, sampled_deformations
 
 STATES = 3
 """Deformations at which derivatives are compared."""
-STRAIN = 0.05
-"""Their size: within the range of any law."""
 STEP = 1e-6
 """Of the deformation gradient, for central differences; errors of a smooth law are some 1e-9."""
 TOLERANCE = 1e-2
@@ -31,7 +30,7 @@ def check_law(law: Material) -> None:
     InvalidQuantity
         Naming the class, the method, and what it must return.
     """
-    F = np.eye(3)[:, :, None] + STRAIN * np.random.default_rng(0).uniform(-1.0, 1.0, (3, 3, STATES))
+    F = sampled_deformations(STATES)
     pressure = np.full(STATES, law.shear_modulus)
     with np.errstate(all="ignore"):
         _compare(law, ("first_piola_kirchhoff", "tangent"), (3, 3), F, pressure)

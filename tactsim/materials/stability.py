@@ -119,8 +119,7 @@ def invariant_drucker_margin(material: Hyperelastic, stretches: Array) -> Array:
     W1, W2 = material.energy_gradient(*invariants)
     W11, W12, W22 = material.energy_hessian(*invariants)
     u, v = 2 * stretches**2, -2 / stretches**2
-    diagonal = 2 * (W1 * u - W2 * v)
-    hessian = np.einsum("ai,bi,i...->ab...", LOGARITHMIC, LOGARITHMIC, diagonal)
+    hessian = np.einsum("ai,bi,i...->ab...", LOGARITHMIC, LOGARITHMIC, 2 * (W1 * u - W2 * v))
     u, v = np.tensordot(LOGARITHMIC, u, 1), np.tensordot(LOGARITHMIC, v, 1)
     uv = np.einsum("a...,b...->ab...", u, v)
     hessian += W11 * np.einsum("a...,b...->ab...", u, u) + W22 * np.einsum("a...,b...->ab...", v, v)

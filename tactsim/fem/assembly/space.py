@@ -15,7 +15,8 @@ from tactsim.errors import InputError
 
 Measure = Literal["axisymmetric", "plane_strain", "solid"]
 
-_ELEMENTS = {2: (ElementTriP2(), ElementTriP1()), 3: (ElementTetP2(), ElementTetP1())}
+ELEMENTS = {2: (ElementTriP2(), ElementTriP1()), 3: (ElementTetP2(), ElementTetP1())}
+"""Quadratic and linear functions by dimension."""
 FACET_ELEMENTS = {2: ElementLineP2(), 3: ElementTriP2()}
 VOLUME_ORDER = {2: 4, 3: 2}
 """Degree of the volume quadrature: 6 points on a triangle (the hoop term is rational), 4 on a tetrahedron."""
@@ -153,7 +154,7 @@ class TaylorHood:
         InputError
             If an element is inverted or flat.
         """
-        displacement, pressure = _ELEMENTS[self.dim]
+        displacement, pressure = ELEMENTS[self.dim]
         X, W = get_quadrature(displacement, order or VOLUME_ORDER[self.dim])
         values, local = tabulate(displacement, X)
         pressure_values, _ = tabulate(pressure, X)
@@ -208,4 +209,4 @@ def tabulate(element: object, X: Array) -> tuple[Array, Array]:
 
 def quadratic_values(X: Array) -> tuple[Array, Array]:
     """Values (Q, A) and local gradients (Q, A, d) of the quadratic functions at points (d, Q) of the reference simplex."""
-    return tabulate(_ELEMENTS[len(X)][0], X)
+    return tabulate(ELEMENTS[len(X)][0], X)

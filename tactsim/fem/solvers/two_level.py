@@ -15,16 +15,13 @@ from dataclasses import dataclass
 import numba
 import numpy as np
 from scipy.sparse import bsr_matrix, csr_matrix, diags, hstack
-from skfem import ElementTetP1, ElementTetP2, ElementTriP1, ElementTriP2
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError
 from tactsim.fem.assembly.body import Body
-from tactsim.fem.assembly.space import TaylorHood, tabulate
+from tactsim.fem.assembly.space import ELEMENTS, TaylorHood, tabulate
 from tactsim.fem.solvers.linear import guiding_solver
 
-ELEMENTS = {2: (ElementTriP2, ElementTriP1), 3: (ElementTetP2, ElementTetP1)}
-"""Quadratic and linear functions by dimension."""
 STIFF = 10.0
 """Diagonal over that of the stress-free tissue from which on contact rules a node; large strains stay below three."""
 SWEEPS = 2
@@ -168,7 +165,7 @@ class TwoLevel:
 def linear_interpolation(space: TaylorHood) -> csr_matrix:
     """Weights (n, n_corner) of the corners at the nodes."""
     quadratic, linear = ELEMENTS[space.dim]
-    local, _ = tabulate(linear(), np.asarray(quadratic().doflocs).T)
+    local, _ = tabulate(linear, np.asarray(quadratic.doflocs).T)
     nodes, first = np.unique(space.elements.ravel(), return_index=True)
     element, place = np.divmod(first, space.elements.shape[1])
     rows = np.repeat(nodes, space.dim + 1)

@@ -45,6 +45,4 @@ class AutomaticSource(BlockSource):
 
 AnySource = TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource
 """What gives a mesh."""
-AnyBlockSource = Annotated[
-    AutomaticSource | TetrahedraSource | LayersSource | GradedSource | StructuredSource | FileSource, Field(discriminator="kind")
-]
+AnyBlockSource = Annotated[AutomaticSource | AnySource, Field(discriminator="kind")]

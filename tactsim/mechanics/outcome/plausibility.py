@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from tactsim.interfaces import Material
 from tactsim.materials.invariant_polynomial import InvariantPolynomial
+from tactsim.materials.moduli import poisson_ratio
 from tactsim.materials.stability_range import stability_range
 from tactsim.materials.viscoelasticity import shear_relaxation
 from tactsim.units import format_quantity
@@ -21,7 +22,7 @@ LARGEST_SIZE_RATIO = 1e3
 LARGEST_STIFFNESS_RATIO = 1e5
 """Stiffest over softest material of one body: a calcified artery in fat has about 1e4."""
 POISSON_ZERO = 2 / 3
-"""Bulk over shear modulus below which Poisson's ratio is negative, from nu = (3 K - 2 G) / (6 K + 2 G)."""
+"""Bulk over shear modulus below which Poisson's ratio is negative, by `poisson_ratio`."""
 NEARLY_INCOMPRESSIBLE = 1e6
 """Bulk over shear modulus beyond which a volume change is round-off: water has some 2 GPa, the softest tissue about 1 kPa."""
 
@@ -83,8 +84,9 @@ def _unusual_material(name: str, material: Material) -> Iterator[str]:
                 given, usual = format_quantity(modulus, "Pa"), f"usual are {low} to {high}"
                 yield f"{name} has a shear modulus of {given} {when}, by its fractions; {usual}: are they right?"
     if bulk is not None and not POISSON_ZERO <= bulk / shear <= NEARLY_INCOMPRESSIBLE:
-        poisson, both = (3 * bulk - 2 * shear) / (6 * bulk + 2 * shear), [format_quantity(value, "Pa") for value in (bulk, shear)]
-        end = "take bulk_modulus: null" if bulk > shear else f"its Poisson's ratio is {poisson:.3g}, that of no tissue"
+        both = [format_quantity(value, "Pa") for value in (bulk, shear)]
+        negative = f"its Poisson's ratio is {poisson_ratio(shear, bulk):.3g}, that of no tissue"
+        end = "take bulk_modulus: null" if bulk > shear else negative
         yield f"{name} has a bulk modulus of {both[0]}, {bulk / shear:.3g} times its shear modulus of {both[1]}: {end}"
     if not isinstance(material, InvariantPolynomial):
         return
