@@ -19,7 +19,8 @@ TANGENTIAL_SHARE = 0.1
 SLIP_SHARE = 10.0
 """Largest elastic slip over the largest penetration."""
 RELAXED_SHARE = 0.02
-"""The same at the present pressure where the contact of relaxing tissue is made softer, because a step with it failed.
+"""Part of the tolerance that the penetration uses at the present pressure once a failed step has made the contact of relaxing
+tissue softer.
 
 Why: tissue is stiffest and presses hardest at once after a jump, and a penalty never decreases by itself, as every change of it
 moves the tissue. Atrial tissue relaxes to a hundred thousandth of its stiffness: under a force its contact ended a thousand times
@@ -96,7 +97,7 @@ class Regularisation:
         return self
 
     def after_step_from(self, before: Self) -> Self:
-        """What the next step begins with after one ``before`` which it was this one."""
+        """What the next step begins with; ``before`` is what this one began with."""
         return self
 
     def applied(self, pair: ContactPair, state: ContactState | None = None) -> ContactPair:

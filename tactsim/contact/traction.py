@@ -114,7 +114,7 @@ class ContactPair:
     pressure / penalty and sticks to traction / tangential_penalty. They may be stiff because the contact tractions are separate
     unknowns of Newton, updated by their linearisation and condensed point by point (the mixed integration point method, Magisano,
     Leonetti & Garcea 2017, doi:10.1016/j.cma.2016.10.023); ``switch_stiffness`` in Pa/m weighs violated kinematics against forces
-    when the state of a point is decided (primal-dual active set, Hueeber, Stadler & Wohlmuth 2008, doi:10.1137/060671061).
+    when the state of a point is decided (primal-dual active set, Hüeber, Stadler & Wohlmuth 2008, doi:10.1137/060671061).
     ``friction_mask`` is 0 at points where the contact is frictionless whatever the law, 1 elsewhere. ``held_limit`` (n,) in Pa,
     if given, limits the tangential traction independently of the pressure (Tresca friction).
     """

@@ -82,7 +82,7 @@ class Equilibrium:
 
     @property
     def iterations(self) -> int:
-        """Linear systems solved."""
+        """Newton steps with a tangent of their own; those with the last factor are not counted."""
         return len(self.history) - 1
 
 

@@ -154,7 +154,7 @@ class BlockPreconditioned(IterativeSolver):
 
 
 def pressure_mass(body: Body, moduli: Array) -> csr_matrix:
-    """Mass matrix of the pressures over a modulus (E,) in Pa, in m^3/Pa, shape (n_corner, n_corner)."""
+    """Mass matrix of the pressures over a modulus (E,) in Pa, in m^3/Pa, shape (n_pressure, n_pressure)."""
     values, space = body.points.pressure_values, body.space
     blocks = np.einsum("e,eq,qv,qw->evw", 1 / moduli, body.points.weights, values, values)
     pressures = space.pressures

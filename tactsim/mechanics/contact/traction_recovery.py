@@ -20,7 +20,7 @@ from tactsim.array import Array
 from tactsim.fem.assembly.space import quadratic_values
 
 SMOOTHING = 0.1
-"""c: a wave of one side of a facet, the shortest that its nodes follow, keeps half; one of two sides 88 %, one of four 99.3 %."""
+"""c: a wave of one side of a facet, the shortest that its nodes follow, keeps half; one of two sides 88 %, one of four 99.2 %."""
 ROUNDS = 3
 """Terms of the smoothing: the error it makes of a smooth traction is of the sixth order in the length of a side."""
 _METRIC = np.array([[4.0, -2.0], [-2.0, 4.0]]) / 3
