@@ -95,14 +95,15 @@ def lost_intervals(margin: Callable[[Array], Array]) -> tuple[Interval, ...]:
 
 
 def around_rest(lost: tuple[Interval, ...]) -> Interval:
-    """The interval around stretch 1 that is free of lost ones."""
-    below = [high for _, high in lost if high <= 1]
-    above = [low for low, _ in lost if low >= 1]
+    """The interval around stretch 1 that is free of lost ones; only 1 itself if that is lost."""
+    below = [min(high, 1.0) for low, high in lost if low <= 1]
+    above = [max(low, 1.0) for low, high in lost if high >= 1]
     return max(below, default=SCANNED[0]), min(above, default=SCANNED[1])
 
 
 def _elliptic_everywhere_within(material: Material) -> float:
-    """Largest s with strong ellipticity for all principal stretches in [1/s, s], along rays of logarithmic strain."""
+    """Largest s with strong ellipticity for all principal stretches in [1/s, s], along rays of logarithmic strain; 1 if the rest
+    state has none."""
     angle = np.linspace(0, np.pi / 3, DIRECTIONS)
     direction = np.stack([np.cos(angle - k * 2 * np.pi / 3) for k in range(3)])
     direction /= np.abs(direction).max(axis=0)
@@ -114,8 +115,8 @@ def _elliptic_everywhere_within(material: Material) -> float:
     lost = ~(margin(logarithm[:, None], direction[:, None, :]) > 0)
     first = np.where(lost.any(axis=0), lost.argmax(axis=0), len(logarithm))
     ray = int(first.argmin())
-    if first[ray] == len(logarithm):
-        return SCANNED[1]
+    if first[ray] in (0, len(logarithm)):
+        return SCANNED[1] if first[ray] else 1.0
     ends = [
         scipy.optimize.brentq(
             lambda t, k=k: float(margin(np.array(t), direction[:, k])), logarithm[first[k] - 1], logarithm[first[k]]

@@ -311,3 +311,13 @@ def test_a_path_beyond_the_scanned_stretches_does_not_condemn_a_material():
     assert report.paths["equibiaxial"].elliptic_lost == (pytest.approx((0.2, 10**-0.5)),)
     assert not stability_range(MooneyRivlin2(c10=1.0, c01=-1 / 24)).strongly_elliptic  # negative from 4.9 on
     assert stability_range(MooneyRivlin2(c10=1.0, c01=-1 / 24)).elliptic_everywhere_within == pytest.approx(24**0.5, rel=1e-6)
+
+
+def test_a_law_that_is_not_elliptic_at_rest_is_stable_nowhere(monkeypatch):
+    """Its report ended in an error of a root finder, and its paths were called stable everywhere."""
+    law, tangent = PrincipalOgden.example(), PrincipalOgden.tangent
+    monkeypatch.setattr(PrincipalOgden, "tangent", lambda self, F, pressure: -tangent(self, F, pressure))
+    report = stability_range(law)
+    assert report.elliptic_everywhere_within == 1.0
+    assert not report.strongly_elliptic
+    assert all(path.elliptic == (1.0, 1.0) for path in report.paths.values())
