@@ -77,7 +77,7 @@ class Change:
         total = float(scipy.special.logsumexp(evidence))
         weights = np.exp(evidence - total)
         numbers = np.arange(len(candidates))
-        averaged = total - np.log(len(candidates)) + nothing(self.values)
+        averaged = total - np.log(len(candidates)) + noise_evidence(self.values)
         return Explanation(averaged, (numbers,), weights, (along / stiff,), (1 / stiff,))
 
     def double(self, fine: Candidates, coarse: Candidates, generator: np.random.Generator) -> Explanation:
@@ -108,7 +108,8 @@ class Change:
         shares = np.exp(logs - scipy.special.logsumexp(logs))
         first, second = self._paired(fine, drawn, rows, generator)
         mean, spread = table.contrasts(first, second)
-        return Explanation(evidence + nothing(self.values), (first, second), np.repeat(shares / DRAWS, DRAWS), mean, spread)
+        evidence += noise_evidence(self.values)
+        return Explanation(evidence, (first, second), np.repeat(shares / DRAWS, DRAWS), mean, spread)
 
     def _partners(self, table: _Table, coarse: Candidates) -> list[int]:
         """Bodies of the best pairs, as numbers of the fine candidates, which are few where the coarse ones have no pair."""
@@ -151,7 +152,7 @@ def _no_pair() -> Explanation:
     return Explanation(-np.inf, (numbers, numbers), none, (none, none), (none, none))
 
 
-def nothing(values: Array) -> float:
+def noise_evidence(values: Array) -> float:
     """Log probability of a whitened change (taxels,) that is noise only, up to a common constant."""
     return float(-(values @ values) / 2)
 

@@ -108,12 +108,12 @@ class ReferenceFit:
         return np.exp(self.evidence - scipy.special.logsumexp(self.evidence))
 
     @property
-    def something(self) -> float:
+    def evidence_of_body(self) -> float:
         """Logarithmic probability density of the change beside a body, without the constant of its dimension."""
         return self.total + log_density(self.change, self.covariance)
 
     @property
-    def nothing(self) -> float:
+    def evidence_of_none(self) -> float:
         """The same without a body; minus infinity if the errors leave no room for any change."""
         alone = self.errors.covariance(0 * self.change)
         return log_density(self.change, alone) if alone[0, 0] > 0 else -np.inf
@@ -126,7 +126,7 @@ class ReferenceFit:
     @property
     def likelihood(self) -> float:
         """Logarithmic probability density of the change if a body is as likely as none, without the same constant."""
-        return float(np.logaddexp(self.nothing, self.something))
+        return float(np.logaddexp(self.evidence_of_none, self.evidence_of_body))
 
     @property
     def bare_factor(self) -> float:

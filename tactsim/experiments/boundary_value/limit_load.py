@@ -20,7 +20,7 @@ class LimitLoad:
         self._model, self._before = model, start
         self._least, self._last = np.inf, 0.0
 
-    def saw(self, state: TimedState) -> None:
+    def observe(self, state: TimedState) -> None:
         """Take in the next accepted state; only steps in which nothing but loads changes count."""
         before, self._before = self._before, state
         conditions = self._model.conditions

@@ -98,7 +98,7 @@ def _accepted(record: BoundaryValueRecord, path: TimedPath, limit: LimitLoad) ->
     """The accepted states of a path, recorded; one that gives up says if its load is at a limit or its contact too exact."""
     try:
         for state, _ in path.states():
-            limit.saw(state)
+            limit.observe(state)
             yield record.accept(state)
     except ConvergenceError as error:
         hints = limit.in_words() or record.wider_in_words() or _shorter_in_words(record)

@@ -145,7 +145,7 @@ class HypothesesEstimator(Estimator):
         bodies = {str(name): self._bodies(name, balls, response, size) for name in self.classes}
         explained = {name: [self._explained(name, fit, *some) for fit in fits] for name, some in bodies.items()}
         densities = {name: [one.log_density for one in each] for name, each in explained.items()}
-        densities["none"] = [fit.nothing for fit in fits]
+        densities["none"] = [fit.evidence_of_none for fit in fits]
         probabilities = self._probabilities(
             {name: self._prior(name) + float(np.logaddexp.reduce(each)) for name, each in densities.items()}
         )

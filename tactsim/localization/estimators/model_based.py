@@ -22,7 +22,7 @@ from tactsim.localization.candidates import (
     limits_in,
     radius_steps,
 )
-from tactsim.localization.evidence import Change, nothing, over_errors
+from tactsim.localization.evidence import Change, noise_evidence, over_errors
 from tactsim.localization.posterior import covariance_about, likely_bodies
 from tactsim.localization.reference_errors import (
     OTHER_TISSUE,
@@ -165,7 +165,7 @@ class ModelBasedEstimator(Estimator):
         two = white.double(fine, coarse, np.random.default_rng(SEED))
         if not np.isfinite(two.evidence):
             return None
-        single = max(fit.total + nothing(white.values), white.single(fine).evidence)
+        single = max(fit.total + noise_evidence(white.values), white.single(fine).evidence)
         odds = self.second * float(np.exp(np.clip(two.evidence - single, -700, 700)))
         apart = rises_apart(difference - (fit.factor - 1) * np.asarray(readings.reference), readings.noise)
         if odds <= 1 and not apart and not between:
@@ -189,8 +189,9 @@ class ModelBasedEstimator(Estimator):
 
     def _probability(self, fits: list[ReferenceFit]) -> float:
         """Of anything being there; each prior of the factor is as likely as the other."""
-        away = np.logaddexp.reduce([fit.nothing for fit in fits]) - np.logaddexp.reduce([fit.something for fit in fits])
-        return float(1 / (1 + (1 - self.prior) / self.prior * np.exp(np.clip(away, -700, 700))))
+        none = np.logaddexp.reduce([fit.evidence_of_none for fit in fits])
+        body = np.logaddexp.reduce([fit.evidence_of_body for fit in fits])
+        return float(1 / (1 + (1 - self.prior) / self.prior * np.exp(np.clip(none - body, -700, 700))))
 
 
 def _apart(pair: Estimate) -> float:

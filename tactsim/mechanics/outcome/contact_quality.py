@@ -71,7 +71,7 @@ class ContactQuality:
         """History values of a state: how volumes are kept, what has left ellipticity until now, what penetration costs."""
         unstable, weights = ~elliptic_in(body, state.kinematics), body.points.weights
         self._unstable = unstable if self._unstable is None else self._unstable | unstable
-        self._strains.saw(body, state.kinematics)
+        self._strains.observe(body, state.kinematics)
         self._effect = self._effect.after(state)
         pressing = [contact.state.pressure > 0 for contact in state.contacts]
         self._touching = max(self._touching, sum(int(points.sum()) for points in pressing))

@@ -20,7 +20,7 @@ class SmallStrains:
     def __init__(self) -> None:
         self.largest = 0.0
 
-    def saw(self, body: Body, state: Kinematics) -> None:
+    def observe(self, body: Body, state: Kinematics) -> None:
         """Take in the deformation of the next accepted state."""
         energies, sizes = [], []
         for index, material in enumerate(body.materials):
