@@ -36,8 +36,8 @@ class MirroredProblem(Problem):
         solver = solver_for(part.body)
         super().__init__(part.whole, np.zeros(0, int), solver=solver, options=options)
         self._part: MirroredPart | None = part
-        self._on_part = Problem(part.body, part.held, solver=solver, options=options)
-        self._on_part.constraints = Constraints(part.held, part.body.pattern, counts=part.counts)
+        held = Constraints(part.held, part.body.pattern, counts=part.counts)
+        self._on_part = Problem(part.body, held, solver=solver, options=options)
         self._in_whole: Problem | None = None
 
     @property

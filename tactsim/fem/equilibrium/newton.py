@@ -50,14 +50,16 @@ SHARE_OF_TOLERANCE = 0.1
 
 
 class Problem:
-    """A body with fixed unknowns; keeps the sparse solver between solutions."""
+    """A body with ``fixed`` unknowns, by their numbers (k,) or as constraints; keeps the sparse solver between solutions."""
 
     copies = 1
     """How many parts like the one that is solved make up the body."""
 
-    def __init__(self, body: Body, fixed: Array, *, solver: LinearSolver | None = None, options: NewtonOptions | None = None):
+    def __init__(
+        self, body: Body, fixed: Array | Constraints, *, solver: LinearSolver | None = None, options: NewtonOptions | None = None
+    ):
         self.body = body
-        self.constraints = Constraints(fixed, body.pattern)
+        self.constraints = fixed if isinstance(fixed, Constraints) else Constraints(fixed, body.pattern)
         self.solver = solver or stiff_contact_solver(body.space.dim)
         self.options = options or NewtonOptions()
         self._scales = Scales.of(body)

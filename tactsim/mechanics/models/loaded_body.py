@@ -208,9 +208,8 @@ class LoadedBody:
         """The problem with what is held; where nodes slide, of its own, as their directions turn from step to step."""
         if held.slides is None:
             return self.problem
-        problem = Problem(self.body, held.unknowns, solver=self.problem.solver, options=self.problem.options)
-        problem.constraints = Constraints(held.unknowns, self.body.pattern, slides=held.slides)
-        return problem
+        constraints = Constraints(held.unknowns, self.body.pattern, slides=held.slides)
+        return Problem(self.body, constraints, solver=self.problem.solver, options=self.problem.options)
 
     def _lifted(self, problem: Problem, held: Prescribed, guess: Array, stiffness: Callable[[], Array]) -> Array:
         """The guess with the prescribed displacements; what it misses of them goes on linearly into the body."""
