@@ -32,7 +32,7 @@ class MeshSettings(FrozenModel):
     """Size of the elements: finest at the edges of the body, growing with the distance from them."""
 
     finest: Positive[Length] | None = None
-    """Element size at the edges; by default a third of the fillet, or a fiftieth of the body's width if its edge is sharp."""
+    """Element size at the edges; by default a third of the fillet, or a fiftieth of the body's radius if its edge is sharp."""
     growth: Annotated[float, Field(gt=0, le=2)] = 0.5
     """Growth of the element size per distance from the edges, dimensionless."""
     coarsest: Positive[Length] | None = None
@@ -55,7 +55,7 @@ class GradedSection:
     rims : radii in m of circles on the surface, at which elements are smallest and which are nodes; on the axis if there are none
     reach : how far around them, in m, elements are smallest on the surface
     usual : smallest size in m unless the case gives another
-    deep : whether they are as small in the depth, as far as on the surface
+    deep : smallest size in m in the depth, as far around the rims as on the surface; None if none are small there
     """
 
     specimen: Specimen
@@ -64,7 +64,7 @@ class GradedSection:
     rims: tuple[float, ...]
     reach: float
     usual: float
-    deep: bool = False
+    deep: float | None = None
 
     def size(self) -> Size:
         """Wanted element size in m, at points in the frame of the body at first touch.
@@ -77,9 +77,10 @@ class GradedSection:
         finest, radii = self.settings.finest or self.usual, np.array(self.rims or [0.0])
         coarsest = max(self.settings.coarsest or self.specimen.thickness / 5, finest)
         at_surface = partial(finer_at_surface, radii=radii, finest=finest / n, growth=growth, reach=self.reach)
-        if self.shape.tip is None and not self.deep:
+        beneath = self.deep if self.shape.tip is None else self.usual
+        if beneath is None:
             return at_surface(lambda points: np.full(len(points), coarsest / n))
-        beneath = finest if self.shape.tip is None else max(self.usual, finest)
+        beneath = max(beneath, finest)
         edges, most = np.column_stack([radii, np.zeros_like(radii)]), max(coarsest, beneath)
         return at_surface(edge_graded(edges, finest=beneath / n, growth=growth, coarsest=most / n, reach=self.reach))
 

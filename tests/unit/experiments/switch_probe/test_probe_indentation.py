@@ -65,6 +65,16 @@ def test_forces_balance_in_plane_strain_and_scale_with_the_width():
     assert state.contact_height == 0.0, "the sides begin above the fillet"
 
 
+@pytest.mark.parametrize("fillet", [0.0, 0.05e-3])
+def test_a_small_fillet_is_resolved_on_the_surface_without_small_elements_in_all_the_tissue_beneath(fillet):
+    """That tissue bends over the face, not over the fillet; as small elements there were 145 000 nodes."""
+    usual, small = (indentation(body=Trapezoid(fillet=r), mesh=MeshSettings()).section().mesh() for r in (0.5e-3, fillet))
+    assert len(small.nodes) < 4 * len(usual.nodes)
+    top = small.nodes[np.abs(small.nodes[:, 1]) < 1e-9, 0]
+    beside = np.sort(top[np.abs(top - 1e-3) < 0.5e-3])
+    assert np.diff(beside).max() < 1.1 * (fillet / 6 or 1e-3 / 100), "two nodes to an element of a third of the fillet"
+
+
 def test_refining_keeps_the_plane_measure():
     setup = indentation()
     model = setup.model()
