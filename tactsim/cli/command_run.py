@@ -24,9 +24,9 @@ COMPARISON = "comparison"
 NAME = "run"
 SUMMARY = "compute a case and write its result"
 DESCRIPTION = """\
-Computes a case and writes result.json, history.csv, provenance.json, fields.pvd (for ParaView)
-and figures/ into the output folder. The folder is complete or absent: it is written beside its
-place and moved there last.
+Computes a case and writes result.json, history.csv, provenance.json, fields.pvd with its .vtu
+files (for ParaView), figures/ and manifest.json (the checksums of all these) into the output
+folder. The folder is complete or absent: it is written beside its place and moved there last.
 
 Without --out the folder is results/<name of the case file>, and an earlier result of tactsim
 there is replaced; if the new run does not converge, an earlier result that did is kept beside
@@ -154,6 +154,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
     from tactsim.case.inputs import check_inputs
     from tactsim.case.loading import read_document, validated_case
     from tactsim.case.placing import placed
+    from tactsim.interfaces.doubts import doubts_of
     from tactsim.outside.library_warnings import collected_warnings
     from tactsim.progress import noted_by
     from tactsim.results import Status
@@ -169,7 +170,7 @@ def _run(path: Path, out: Path | None, arguments: argparse.Namespace) -> int:
         with claimed(directory, replace=_may_replace(arguments)) as folder:
             progress = _progress(case, arguments)
             if progress is not None:
-                for doubt in case.experiment.doubts():
+                for doubt in doubts_of(case.experiment):
                     console.note(f"warning: {doubt}")
             with collected_warnings() as raised, noted_by(progress and console.note), placed(case, document, place):
                 try:

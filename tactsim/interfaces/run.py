@@ -14,7 +14,7 @@ from typing import Any, Literal, Self, TypeVar, cast, final
 
 from tactsim.deadline import allowed_seconds, check_time, time_limit
 from tactsim.errors import Collapsed, ConvergenceError, InputError, OutOfMemory, OutOfTime, Unfinished, shown
-from tactsim.interfaces.doubts import doubts_beside
+from tactsim.interfaces.doubts import doubts_beside, doubts_of
 from tactsim.interfaces.history_units import KindWithHistory
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variation import Variation, check_places
@@ -163,7 +163,7 @@ class Runnable(KindWithHistory):
         InputError
             As `unloaded`.
         """
-        with doubts_beside(self.doubts):
+        with doubts_beside(self):
             return _result(self, self.unloaded().ended(Status.INTERRUPTED, "at rest; nothing is computed"), {})
 
     @final
@@ -203,7 +203,7 @@ def run_experiment(experiment: Runnable, progress: Progress | None, seconds: flo
     started = time.perf_counter()
     COMPILATION.of_another_run()
     try:
-        with time_limit(seconds), doubts_beside(experiment.doubts):
+        with time_limit(seconds), doubts_beside(experiment):
             course = _course(experiment)
             setup = time.perf_counter() - started
             early = _ended_early(course, progress)
@@ -253,7 +253,7 @@ def _result(experiment: Runnable, findings: Findings, timing: Mapping[str, float
         quantities=findings.quantities,
         assumptions=checked_texts(findings.assumptions, f"assumptions of {name}"),
         warnings=(
-            *checked_texts(experiment.doubts(), f"doubts of {name}"),
+            *doubts_of(experiment),
             *checked_texts(findings.warnings, f"warnings of {name}"),
         ),
         timing=dict(timing),

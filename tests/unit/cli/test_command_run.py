@@ -105,6 +105,18 @@ def test_what_looks_wrong_is_said_before_it_is_computed(
     assert capsys.readouterr().err.splitlines()[0] == "warning: a block of 4 km"
     assert main(["run", "case.yaml"]) == 0
     assert capsys.readouterr().err == "", "nobody watches, and the result says it"
+    monkeypatch.setattr(Pretence, "doubts", lambda self: "a single text")
+    assert main(["run", "case.yaml", "--progress"]) == 0
+    assert capsys.readouterr().err.splitlines()[0] == "warning: a single text"
+
+
+def test_the_help_names_every_file_that_is_written(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "case.yaml"]) == 0
+    capsys.readouterr()
+    assert main(["run", "--help"]) == 0
+    shown = capsys.readouterr().out
+    written = {file.name for file in Path("results/case").iterdir()}
+    assert {name for name in written if name not in shown and not name.endswith(".vtu")} == set()
 
 
 def test_a_run_that_fails_is_written_and_presents_no_threshold(capsys: pytest.CaptureFixture[str]) -> None:

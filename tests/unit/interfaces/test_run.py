@@ -107,6 +107,18 @@ def test_doubts_are_warnings_of_every_result(
     assert returned_by(run_within_another(made())).warnings == ("a block of 4 km", "w")
 
 
+def test_a_single_text_is_one_doubt_below_what_a_case_is_refused_for(
+    made: Callable[..., Experiment], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    doubtful = made(before=InputError("no such mesh"))
+    monkeypatch.setattr(type(doubtful), "doubts", lambda self: "a block of 4 km")
+    with pytest.raises(InputError, match=r"^no such mesh\na block of 4 km$"):
+        doubtful.run()
+    monkeypatch.setattr(type(doubtful), "doubts", lambda self: [4.0])
+    with pytest.raises(InputError, match=r"^doubts of Scripted: \[4\.0\]; needed: a tuple of texts"):
+        doubtful.run()
+
+
 def test_an_interruption_by_whoever_watches_keeps_the_step(made: Callable[..., Experiment]) -> None:
     def stop(step: StepRecord) -> None:
         raise KeyboardInterrupt
