@@ -14,7 +14,8 @@ from tactsim.cli.data_actions import CONFUSION, RANKING
 from tactsim.cli.data_actions import EXAMPLES as EXAMPLES
 from tactsim.cli.data_actions import add_arguments as add_arguments
 from tactsim.errors import NOT_AS_RECORDED, InputError, InvalidQuantity, StorageError, TactsimError
-from tactsim.outside.text import one_line
+from tactsim.outside.defect_place import unless_own
+from tactsim.outside.text import counted, one_line
 
 if TYPE_CHECKING:
     from tactsim.dataset.ranking.samples import JudgedSamples
@@ -53,7 +54,7 @@ def _check(arguments: argparse.Namespace) -> int:
     if len(checked.findings) > MOST_FINDINGS:
         console.out(f"and {len(checked.findings) - MOST_FINDINGS} more")
     counts = ", ".join(f"{count} {name}" for name, count in checked.counts.items())
-    verdict = f"{len(checked.findings)} finding{'s' * (len(checked.findings) > 1)}" if checked.findings else "nothing found"
+    verdict = counted(len(checked.findings), "finding") if checked.findings else "nothing found"
     console.out(f"{one_line(arguments.store)}: {counts or 'not read'}; {verdict}")
     return NOT_AS_RECORDED if checked.findings else 0
 
@@ -71,7 +72,7 @@ def _export(arguments: argparse.Namespace) -> int:
     if arguments.to is None:
         raise InputError("export: --to is missing; name a file ending in .h5, or a folder for Parquet and npz")
     count = exported(arguments.store, arguments.to, split=arguments.split)
-    console.out(f"{count} samples in {arguments.to}")
+    console.out(f"{counted(count, 'sample')} in {arguments.to}")
     return 0
 
 
@@ -92,15 +93,34 @@ def _rank(arguments: argparse.Namespace) -> int:
     if arguments.learned is not None:
         estimators["learned"] = LearnedEstimator.checked(arguments.learned)
     seen = 0 if arguments.learned is None else seen_in_training(read_weights(arguments.learned), samples)
-    ranked = ranking(estimators, samples, stored_response(arguments.reference[-1]), seed=arguments.seed)
+    failed: dict[str, Exception] = {}
+    response = stored_response(arguments.reference[-1])
+    ranked = ranking(estimators, samples, response, seed=arguments.seed, failed=failed.__setitem__)
+    if not ranked:
+        raise next(iter(failed.values()))
+    reasons = {name: _reason(error) for name, error in failed.items()}
     about = {"store": arguments.store.name, "split": arguments.split, "seed": arguments.seed, "seen_in_training": seen}
-    content = record(ranked, samples, about)
+    content = record(ranked, samples, about | {"failed": reasons})
     drawn = _drawn(lambda: ranking_figures(content))
-    text = as_text(ranked, samples, tuple(drawn), seen)
+    text = as_text(ranked, samples, tuple(drawn), seen, failed=reasons)
     _write(folder, content, text, drawn)
     console.out(as_summary(ranked, samples, seen))
     console.out(f"report in {folder}")
-    return 0
+    for name, reason in reasons.items():
+        console.error(f"{name} failed and is not ranked: {reason}")
+    return next((_code(error) for error in failed.values()), 0)
+
+
+def _reason(error: Exception) -> str:
+    """Why an estimator is not ranked."""
+    if isinstance(error, TactsimError):
+        return one_line(error)
+    return f"internal error ({type(error).__name__}: {one_line(error)}); please report it{unless_own(error)}"
+
+
+def _code(error: Exception) -> int:
+    """The exit code of a command that it would have ended."""
+    return error.exit_code if isinstance(error, TactsimError) else TactsimError.exit_code
 
 
 def _confusion(arguments: argparse.Namespace) -> int:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from tactsim.cli import console
 from tactsim.errors import NOT_AS_RECORDED, InputError
+from tactsim.outside.text import counted
 from tactsim.shipped import PROGRAM
 
 if TYPE_CHECKING:
@@ -108,8 +109,10 @@ def _origin(runner: StudyRunner) -> str:
     computed, kept = len(runner.computed), len(runner.from_cache)
     if not kept:
         return ""
-    held = f"all {kept} simulations of the studies are" if not computed else f"{computed} simulations were computed, {kept} are"
-    return f"{held} from the cache; --fresh computes them again"
+    are, them = ("is", "it") if kept == 1 else ("are", "them")
+    whole = "the only simulation" if kept == 1 else f"all {kept} simulations"
+    were = f"{counted(computed, 'simulation')} {'was' if computed == 1 else 'were'} computed, {kept}"
+    return f"{were if computed else f'{whole} of the studies'} {are} from the cache; --fresh computes {them} again"
 
 
 def _validated(loaded: LoadedTables, runner: StudyRunner, progress: bool) -> Validation:

@@ -74,19 +74,25 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         action.add_argument("store", metavar="STORE", type=Path, help="folder that tactsim sweep wrote")
         if name not in ("check", "info"):
             action.add_argument("--split", metavar="NAME", action="append", help="only this part; may be repeated")
+        needed: list[argparse.Action] = []
         if name == "export":
-            action.add_argument("--to", metavar="PLACE", type=Path, help="file ending in .h5, or folder for Parquet and npz")
+            words = "file ending in .h5, or folder for Parquet and npz"
+            needed.append(action.add_argument("--to", metavar="PLACE", type=Path, required=True, help=words))
         elif name in ("rank", "train", CONFUSION):
-            _add_judging(action, name)
+            needed = _add_judging(action, name)
         action.add_argument("--debug", action="store_true", default=argparse.SUPPRESS, help="show the traceback of an error")
+        action.usage = action.format_usage().removeprefix("usage: ").rstrip()
+        for option in needed:
+            option.required = False  # argparse would only name it, and hide an unknown option; the command says what to give
 
 
-def _add_judging(action: argparse.ArgumentParser, name: str) -> None:
-    """The options of what compares samples with a plain grasp."""
+def _add_judging(action: argparse.ArgumentParser, name: str) -> list[argparse.Action]:
+    """The options of what compares samples with a plain grasp; those without which it cannot begin."""
     again, added = "" if name == CONFUSION else "; may be repeated", "default: rounding to 0.1 N"
-    action.add_argument("--reference", metavar="RESULT", action="append", default=[], help=f"plain grasp{again}")
+    words = f"plain grasp{again}"
+    needed = [action.add_argument("--reference", metavar="RESULT", action="append", default=[], required=True, help=words)]
     place = "file ending in .npz" if name == "train" else f"folder (default: {RANKING if name == 'rank' else name})"
-    action.add_argument("--out", metavar="PLACE", type=Path, help=place)
+    out = action.add_argument("--out", metavar="PLACE", type=Path, required=name == "train", help=place)
     if name != CONFUSION:
         added += ", read_force: none"
         words = "what is read (default: read_force if the store has it)"
@@ -96,3 +102,4 @@ def _add_judging(action: argparse.ArgumentParser, name: str) -> None:
         action.add_argument("--learned", metavar="FILE", type=Path, help="also the estimator that train wrote")
     seeded = "of added noise and of training" if name == "train" else "of added noise and of what is drawn"
     action.add_argument("--seed", metavar="N", type=int, default=1, help=f"{seeded} (default 1)")
+    return [*needed, out] if out.required else needed

@@ -34,6 +34,11 @@ def first_names(names: Sequence[object], most: int) -> str:
     return ", ".join(map(str, names[:most])) + more
 
 
+def counted(count: int, name: str, plural: str = "") -> str:
+    """How many there are of something, such as ``1 sample`` and ``2 samples``; the plural is the name with an s by default."""
+    return f"{count} {name if count == 1 else plural or name + 's'}"
+
+
 def aligned(table: Sequence[Sequence[str]], *, left: int = 1, least: Sequence[int] = (), indent: str = "") -> list[str]:
     """Lines of a table for a terminal: the cells of the first ``left`` columns begin in line, those of the others end in line.
 

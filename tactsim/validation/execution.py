@@ -16,6 +16,7 @@ from tactsim.code_identity import code_identity
 from tactsim.errors import ConvergenceError, StorageError, TactsimError
 from tactsim.outside.files import opened
 from tactsim.outside.processes import BROKEN, serve
+from tactsim.outside.text import counted
 from tactsim.outside.worker_pool import Answer, WorkerPool
 from tactsim.results.scene import Scene
 from tactsim.storage.files import replace_file
@@ -98,7 +99,7 @@ class StudyRunner:
     def _computed(self, waiting: dict[str, Task], progress: Progress) -> Iterator[tuple[str, RunOutcome]]:
         if not waiting:
             return
-        progress(f"{len(waiting)} simulations in {min(self.workers, len(waiting))} processes")
+        progress(f"{counted(len(waiting), 'simulation')} in {counted(min(self.workers, len(waiting)), 'process', 'processes')}")
         with closing(WorkerPool[str](MODULE, (), self.workers)) as pool:
             for case_id, task in waiting.items():
                 pool.submit(case_id, json.dumps(asdict(task)).encode())

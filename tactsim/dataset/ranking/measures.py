@@ -185,9 +185,16 @@ class Ranked:
 
 
 def ranking(
-    estimators: Mapping[str, Estimator], samples: JudgedSamples, response: LumpResponse | None, *, seed: int = 1
+    estimators: Mapping[str, Estimator],
+    samples: JudgedSamples,
+    response: LumpResponse | None,
+    *,
+    seed: int = 1,
+    failed: Callable[[str, Exception], None] | None = None,
 ) -> list[Ranked]:
     """Every estimator on every sample at every noise, the least score first.
+
+    One that fails is left out, and ``failed`` is called with its name and its error; by default the error is raised.
 
     Raises
     ------
@@ -199,7 +206,13 @@ def ranking(
         numbers = itertools.count(1)
         judge = partial(outcomes, samples=samples, response=response, seed=seed, done=lambda: show(next(numbers)))
         for name, estimator in estimators.items():
-            runs = {multiple: judge(estimator, multiple=multiple) for multiple in NOISES}
+            try:
+                runs = {multiple: judge(estimator, multiple=multiple) for multiple in NOISES}
+            except Exception as error:  # a defect in one of the user's own costs no other its place
+                if failed is None:
+                    raise
+                failed(name, error)
+                continue
             noises = {multiple: measures(run, samples.block_size) for multiple, run in runs.items()}
             ranked.append(Ranked(name, tuple(runs[1.0]), noises, binned(runs[1.0], samples.block_size)))
     return sorted(ranked, key=lambda one: float(one.measures["score"]["value"]))

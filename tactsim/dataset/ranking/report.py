@@ -128,8 +128,15 @@ def _noise_words(samples: JudgedSamples) -> str:
     return f"{format_quantity(float(low), 'N')} to {format_quantity(float(high), 'N')}"
 
 
-def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[str], seen: int = 0) -> str:
-    """The table in Markdown; ``seen`` samples were those of the training."""
+def as_text(
+    ranked: Sequence[Ranked],
+    samples: JudgedSamples,
+    figures: Sequence[str],
+    seen: int = 0,
+    *,
+    failed: Mapping[str, str] | None = None,
+) -> str:
+    """The table in Markdown; ``seen`` samples were those of the training; ``failed`` estimators have reasons, not numbers."""
     lumps = sum(truth.present for truth in samples.truths)
     lines = [
         "# Ranking of estimators",
@@ -142,6 +149,7 @@ def as_text(ranked: Sequence[Ranked], samples: JudgedSamples, figures: Sequence[
         *((words, "") if (words := seen_words(seen, samples)) else ()),
         *_table("estimator", [(one.name, one.measures) for one in ranked], COLUMNS),
         "",
+        *(line for name, reason in (failed or {}).items() for line in (f"`{name}` failed and is not ranked: {reason}", "")),
     ]
     ratios = against_baseline(ranked)
     if ratios:

@@ -109,6 +109,8 @@ def test_a_place_that_is_taken_is_refused_before_computing(tmp_path: Path, capsy
     [
         (0, 7, "all 7 simulations of the studies are from the cache; --fresh computes them again\n"),
         (2, 5, "2 simulations were computed, 5 are from the cache; --fresh computes them again\n"),
+        (0, 1, "the only simulation of the studies is from the cache; --fresh computes it again\n"),
+        (1, 1, "1 simulation was computed, 1 is from the cache; --fresh computes it again\n"),
         (7, 0, ""),
     ],
 )

@@ -29,6 +29,24 @@ def test_every_command_has_examples(command: str, capsys: pytest.CaptureFixture[
     assert f"tactsim {command}" in text.split("\nexample")[1]
 
 
+@pytest.mark.parametrize(
+    ("action", "needed"),
+    [
+        ("export", ["--to PLACE"]),
+        ("rank", ["--reference RESULT"]),
+        ("train", ["--reference RESULT", "--out PLACE"]),
+        ("confusion", ["--reference RESULT"]),
+    ],
+)
+def test_what_must_be_given_stands_in_no_brackets(action: str, needed: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["data", action, "--help"]) == 0
+    usage = " ".join(capsys.readouterr().out.split("\n\n")[0].split())
+    assert usage.startswith(f"usage: tactsim data {action} [-h]")
+    for option in needed:
+        assert f" {option} " in usage
+    assert ("--out PLACE" in usage.replace("[--out PLACE]", "")) == ("--out PLACE" in needed)
+
+
 def test_the_version_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["--version"]) == 0
     assert capsys.readouterr().out == f"tactsim {__version__}\n"

@@ -21,10 +21,11 @@ from tactsim.dataset.ranking.measures import JudgedEstimate, binned, measures, o
 from tactsim.dataset.ranking.report import against_baseline, as_summary, as_text, record
 from tactsim.dataset.ranking.samples import Truth, judged_samples
 from tactsim.dataset.ranking.training import seen_in_training
-from tactsim.errors import InputError
+from tactsim.errors import InputError, InvalidQuantity
 from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.estimate import Estimate, EstimatedInclusion
 from tactsim.interfaces.readings import noise_in_words
+from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.localization.networks import LearnedWeights, Network, read_weights
@@ -157,6 +158,47 @@ def test_the_command_writes_report_and_figures(
     assert names == {".tactsim.json", "report.json", "report.md", "errors.png", "noise.png", "places.png"}
     assert main([*order, "--learned", str(tmp_path / "none.npz")]) == 5
     assert "No such file" in capsys.readouterr().err
+
+
+def test_an_estimator_that_fails_costs_no_other_its_place(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def refusing(self: object, readings: object) -> Estimate:
+        raise InvalidQuantity("no room for two")
+
+    def broken(self: object, readings: object) -> Estimate:
+        raise ZeroDivisionError("by zero")
+
+    table = response()
+    monkeypatch.setattr("tactsim.experiments.localization.response_store.stored_response", lambda folder: table)
+    monkeypatch.setattr(HypothesesEstimator, "estimate", refusing)
+    monkeypatch.setattr(ModelBasedEstimator, "estimate", broken)
+    store, plain = made_store(tmp_path, table, training=39), plain_result(tmp_path / "plain")
+    order = [
+        "data",
+        "rank",
+        str(store),
+        "--reference",
+        plain,
+        "--noise",
+        "0.3 mN",
+        "--split",
+        "test",
+        "--out",
+        str(tmp_path / "out"),
+    ]
+    assert main(order) == 1, "that of the first that failed"
+    shown, noted = capsys.readouterr()
+    assert any(line.startswith("thesis ") for line in shown.splitlines())
+    assert "error: hypotheses failed and is not ranked: no room for two\n" in noted
+    assert "error: model_based failed and is not ranked: internal error (ZeroDivisionError: by zero); please report it" in noted
+    content = json.loads((tmp_path / "out" / "report.json").read_text())
+    assert {one["name"] for one in content["estimators"]} == {"thesis", "thesis with reference"}
+    assert set(content["failed"]) == {"hypotheses", "model_based"}
+    assert "`hypotheses` failed and is not ranked: no room for two\n" in (tmp_path / "out" / "report.md").read_text()
+    monkeypatch.setattr(ThesisEstimator, "estimate", refusing)
+    assert main(order) == 2
+    assert not capsys.readouterr().out, "nothing to rank"
 
 
 def test_an_estimator_that_was_trained_on_what_it_is_ranked_by_is_warned_of(tmp_path: Path) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from tactsim.outside.text import aligned, first_names, one_line, printable
+from tactsim.outside.text import aligned, counted, first_names, one_line, printable
 
 
 @pytest.mark.parametrize(
@@ -43,3 +43,8 @@ def test_columns_are_as_wide_as_their_widest_cell() -> None:
 def test_of_many_names_the_first_are_named_and_the_others_counted():
     assert first_names(["a", "b"], 2) == "a, b"
     assert first_names([3, 12, 40], 2) == "3, 12 and 1 more"
+
+
+def test_one_is_not_counted_in_the_plural() -> None:
+    assert [counted(number, "sample") for number in (0, 1, 2)] == ["0 samples", "1 sample", "2 samples"]
+    assert [counted(number, "process", "processes") for number in (1, 2)] == ["1 process", "2 processes"]

@@ -99,3 +99,11 @@ def test_a_whole_number_that_a_study_sets_stays_one() -> None:
     text = '{"name": "s", "case": "c.yaml", "common": {"a.steps": 2, "b": 0.5, "c": true}, "runs": [{"id": "r"}]}'
     study = Study.model_validate_json(text, strict=True)
     assert study.overrides(study.runs[0]) == ("a.steps=2", "b=0.5", "c=true")
+
+
+def test_one_simulation_is_not_reported_in_the_plural() -> None:
+    def interrupting(line: str) -> None:
+        raise KeyboardInterrupt(line)
+
+    with pytest.raises(KeyboardInterrupt, match=r"^1 simulation in 1 process$"):
+        next(StudyRunner(workers=2)._computed({"identity": Task("icf", "annulus_icf.yaml", ())}, interrupting))
