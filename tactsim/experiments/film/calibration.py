@@ -132,11 +132,27 @@ class ForceCalibration(Experiment):
         excluded = int(fit.excluded.sum())
         if excluded:
             warnings.append(f"{excluded} of {fit.used.size} readings are saturated and were left out")
+        if isinstance(self.data, SyntheticCalibration):
+            warnings += self._unsettled(self.data)
         curved = [k + 1 for k in range(fit.slope.size) if self._curved(force, fit, k)]
         if curved:
             which = "" if fit.slope.size == 1 else f" of sensor {', '.join(map(str, curved))}"
             warnings.append(f"the residuals{which} follow a curve: the intervals, which allow for noise alone, are too narrow")
         return warnings
+
+    def _unsettled(self, data: SyntheticCalibration) -> list[str]:
+        """What the low pass keeps from a reading, if the converter sees it."""
+        lag, low_pass = data.lag(self.chain), self.chain.low_pass
+        if low_pass is None or lag <= self.chain.converter.step:
+            return []
+        step, kept = (format_quantity(float(f"{value:.3g}"), "V") for value in (self.chain.converter.step, lag))
+        cutoff, hold = format_quantity(low_pass.cutoff, "Hz"), format_quantity(data.hold, "s")
+        longer, factor = data.settled_hold(self.chain), data.settled_hold(self.chain) / data.hold
+        advice = f"{_rounded_up(longer):g} s or raise chain.low_pass.cutoff to {_rounded_up(factor * low_pass.cutoff):g} Hz"
+        return [
+            f"the low pass of {cutoff} is up to {kept} behind at the end of a hold of {hold}, where a step of the converter is "
+            f"{step}: slope and intercept are those of readings that have not settled; lengthen data.hold to {advice}"
+        ]
 
     def _curved(self, force: Array, fit: CalibrationFit, sensor: int) -> bool:
         """Whether neighbouring residuals of a sensor are more alike than noise beyond a step of the converter makes them."""
@@ -144,6 +160,12 @@ class ForceCalibration(Experiment):
         error = fit.force_error[used, sensor][np.argsort(force[used], kind="stable")]
         alike = float((error[1:] * error[:-1]).sum() / max((error**2).sum(), np.finfo(float).tiny))
         return alike * np.sqrt(error.size) > FOLLOWING and float(fit.noise[sensor]) > self.chain.converter.step
+
+
+def _rounded_up(value: float) -> float:
+    """A positive number to two digits, not less than it was."""
+    digit = 10.0 ** (np.floor(np.log10(value)) - 1)
+    return float(f"{np.ceil(value / digit) * digit:.2g}")
 
 
 def _alone(value: Array) -> Any:

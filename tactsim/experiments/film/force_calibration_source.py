@@ -72,6 +72,27 @@ class SyntheticCalibration(FrozenModel):
             saturated.append(recording.saturated.any(axis=0))
         return forces, np.array(voltages), np.array(saturated)
 
+    def lag(self, chain: SignalChain) -> float:
+        """Most in V by which the low pass keeps the reading at the end of a hold from the voltage of its force."""
+        if chain.low_pass is None:
+            return 0.0
+        jump = np.append(0.0, np.ones(chain.times(self.hold).size))
+        left = 1 - float(chain.low_pass.filtered(jump, chain.sampling_rate)[0][-1])
+        return abs(left) * self._largest_jump(chain)
+
+    def settled_hold(self, chain: SignalChain) -> float:
+        """Hold in s after which the low pass is within a step of the converter; of a high order a little more than it takes."""
+        if chain.low_pass is None:
+            return 0.0
+        slowest = 2 * np.pi * chain.low_pass.cutoff * np.sin(np.pi / (2 * chain.low_pass.order))  # 1/s, of a Butterworth filter
+        return max(0.0, float(np.log(chain.low_pass.order * self._largest_jump(chain) / chain.converter.step) / slowest))
+
+    def _largest_jump(self, chain: SignalChain) -> float:
+        """Largest change of the voltage in V from one hold to the next."""
+        forces = np.tile(self.forces, min(self.repeats, 2))
+        voltage = chain.voltage(self.line.conductance(forces)[:, None] * self._gains())
+        return float(np.abs(np.diff(voltage, axis=0)).max(initial=0.0))
+
     def _gains(self) -> Array:
         return np.ones(self.sensors) if self.scatter is None else self.scatter.gains((self.sensors,), self.line)
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -15,6 +17,7 @@ from tactsim.results.writing import history_table
 from tactsim.sensors.electronics.calibration import THESIS_LINE
 from tactsim.sensors.electronics.channel_scatter import ChannelScatter
 from tactsim.sensors.electronics.converter import Converter
+from tactsim.sensors.electronics.low_pass import LowPass
 from tactsim.sensors.electronics.noise import Noise
 from tactsim.sensors.electronics.signal_chain import SignalChain
 
@@ -118,6 +121,22 @@ def test_a_curved_sensor_is_warned_of(written):
     result = run(data=written(force, 1e3 * SignalChain().voltage(THESIS_LINE.conductance(bowed))))
     assert any("follow a curve" in words for words in result.warnings)
     assert not any("follow a curve" in words for words in run(chain=NOISY).warnings)
+
+
+@pytest.mark.parametrize("order", [1, 2, 5])
+def test_a_low_pass_that_has_not_settled_is_warned_of_until_its_advice_is_taken(order):
+    slow = SignalChain(low_pass=LowPass(cutoff=1.0, order=order))
+    result = run(chain=slow)
+    (warning,) = (text for text in result.warnings if "low pass" in text)
+    assert warning.startswith("the low pass of 1 Hz is up to ")
+    assert "at the end of a hold of 200 ms, where a step of the converter is " in warning
+    assert abs(result["slope_error"].value) > 0.05
+    hold, cutoff = (float(re.search(words, warning)[1]) for words in (r"data\.hold to ([\d.]+) s", r"cutoff to ([\d.]+) Hz"))
+    for data, low_pass in ((SyntheticCalibration(hold=hold), slow.low_pass), (QUICK, LowPass(cutoff=cutoff, order=order))):
+        settled = run(data=data, chain=SignalChain(low_pass=low_pass))
+        assert not any("low pass" in text for text in settled.warnings)
+        assert abs(settled["slope_error"].value) < 1e-3, "what is left of a jump is below a step of 16 bits"
+    assert not any("low pass" in text for text in run(chain=SignalChain(low_pass=None)).warnings)
 
 
 def test_holds_that_fill_the_memory_are_refused():
