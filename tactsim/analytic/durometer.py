@@ -76,6 +76,11 @@ def hertz_force(depth: float | Array, radius: float, youngs_modulus: float) -> f
     return 16 / 9 * youngs_modulus * np.sqrt(radius) * np.asarray(depth) ** 1.5
 
 
+def hertz_depth(force: float, radius: float, youngs_modulus: float) -> float:
+    """Depth in m at which Hertz's sphere bears a force in N; the inverse of `hertz_force`."""
+    return float((force / hertz_force(1.0, radius, youngs_modulus)) ** (2 / 3))
+
+
 def hertz_modulus(reading: float, scale: DurometerScale, radius: float) -> float:
     """Young's modulus in Pa of the incompressible half-space on which Hertz's sphere of this radius in m gives the reading.
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, ClassVar, Literal, Self
 
 from pydantic import model_validator
 
-from tactsim.analytic.durometer import DurometerScale
+from tactsim.analytic.durometer import DurometerScale, hertz_depth
 from tactsim.contact.any_law import AnyLaw
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.rod import Rod
@@ -18,6 +18,7 @@ from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.fem.paths.loading import Event
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.run import Course
+from tactsim.materials.moduli import youngs_modulus
 from tactsim.mechanics.contact.penetration_bounds import check_penetration, default_penetration
 from tactsim.mechanics.models.specimen import Specimen
 from tactsim.units import Force, Length, NonNegative, Positive, format_quantity
@@ -54,8 +55,8 @@ class Durometer(Experiment):
     stop: Literal["reading", "travel"] = "reading"
     """Whether the run ends at the reading, or goes on over the whole travel."""
     penetration_tolerance: Positive[Length] | None = None
-    """Largest penetration at any surface quadrature point; by default 1e-3 of the indentor's radius, 0.05 units of type OO.
-    At most a tenth of that radius, of the travel and of the thinnest layer."""
+    """Largest penetration at any surface quadrature point; by default 1e-3 of the indentor's radius, 0.05 units of type OO, and
+    on hard material 2e-3 of the depth by Hertz. At most a tenth of that radius, of the travel and of the thinnest layer."""
     mesh: MeshSettings = MeshSettings(growth=0.8, adaptive=False)
     """Size of the elements."""
     steps: StepSettings = StepSettings()
@@ -93,12 +94,19 @@ class Durometer(Experiment):
             specimen=self.specimen,
             body=self.indentor,
             contact=self.contact,
-            penetration_tolerance=self.penetration_tolerance or default_penetration(1e-3 * radius, self.scale.travel),
+            penetration_tolerance=self.penetration_tolerance or default_penetration(1e-3 * radius, self._expected_depth),
             stop="displacement",
             displacement=self.scale.travel,
             mesh=self.mesh,
             steps=StepSettings(first=first, largest=largest, smallest=given.smallest),
         )
+
+    @property
+    def _expected_depth(self) -> float:
+        """Depth in m by Hertz under the whole force of the spring: near the reading where the surface is hard."""
+        surface = self.specimen.materials[0]
+        modulus = youngs_modulus(surface.shear_modulus, surface.bulk_modulus)
+        return min(self.scale.travel, hertz_depth(float(self.scale.spring_force(0.0)), self.indentor.radius, modulus))
 
     @classmethod
     def example(cls) -> Self:

@@ -56,6 +56,14 @@ def test_the_interval_is_that_of_another_spring(hard):
     assert quantities["reading_low"] < quantities["reading"] < quantities["reading_high"]
 
 
+def test_the_default_penetration_is_small_beside_the_depth_in_a_hard_material():
+    """It was that of soft tissue, and took more of the force away than is allowed: the run failed."""
+    result = measured(NeoHookean(c10=10e6 / 6), mesh=MeshSettings(growth=0.8, adaptive=False))
+    assert result.status == "converged"
+    assert values(result)["penetration_force_error"] < 0.005
+    assert values(result)["reading"] == pytest.approx(values(result)["hertz_reading"], abs=0.1)
+
+
 def test_soft_tissue_bottoms_out():
     result = measured(NeoHookean(c10=1e3), scale={"travel": 0.5e-3})
     assert result.status == "converged"
