@@ -22,7 +22,7 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.localization.candidates import Candidates
-from tactsim.localization.reference_errors import ReferenceFit, whitened
+from tactsim.localization.reference_errors import ReferenceFit, single_evidence, whitened
 
 BEGINNINGS = 4
 """Pairs of the coarse grid from which the search on the fine grid begins."""
@@ -72,13 +72,12 @@ class Change:
 
     def single(self, candidates: Candidates) -> Explanation:
         """The evidence of single bodies: one of the candidates alone."""
-        along, stiff = candidates.signals @ self.values, (candidates.signals**2).sum(axis=1) + self.ridge
-        evidence = along**2 / stiff / 2 - np.log(stiff / self.ridge) / 2
+        evidence, contrasts, spreads = single_evidence(candidates.signals, self.values, self.contrast_spread)
         total = float(scipy.special.logsumexp(evidence))
         weights = np.exp(evidence - total)
         numbers = np.arange(len(candidates))
         averaged = total - np.log(len(candidates)) + noise_evidence(self.values)
-        return Explanation(averaged, (numbers,), weights, (along / stiff,), (1 / stiff,))
+        return Explanation(averaged, (numbers,), weights, (contrasts,), (spreads,))
 
     def double(self, fine: Candidates, coarse: Candidates, generator: np.random.Generator) -> Explanation:
         r"""Two of the fine candidates that do not overlap, by importance sampling.

@@ -193,8 +193,15 @@ def log_density(change: Array, covariance: Array) -> float:
 
 
 def _single(signals: Array, change: Array, covariance: Array, contrast_spread: float) -> tuple[Array, Array, Array]:
-    """Logarithmic evidence (n,) over that of no signal, and mean and variance (n,) of the contrast."""
+    """As `single_evidence`, of signals (n, taxels) and a change (taxels,) in N with errors of a covariance in N^2."""
     white = whitened(np.vstack([change, signals]), covariance)
-    strength, along = (white[1:] ** 2).sum(axis=1), white[1:] @ white[0]
-    stiff = strength + 1 / contrast_spread**2
+    return single_evidence(white[1:], white[0], contrast_spread)
+
+
+def single_evidence(signals: Array, change: Array, contrast_spread: float) -> tuple[Array, Array, Array]:
+    """Logarithmic evidence (n,) over that of no signal, and mean and variance (n,) of the contrast.
+
+    The signals (n, taxels) and the change (taxels,) are whitened: their errors are of variance 1.
+    """
+    stiff, along = (signals**2).sum(axis=1) + 1 / contrast_spread**2, signals @ change
     return along**2 / stiff / 2 - np.log(stiff * contrast_spread**2) / 2, along / stiff, 1 / stiff
