@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from tactsim.array import Array
+from tactsim.array import Array, evenly_spaced
 
 FIRSTS = 64
 """Bodies, each held against all others, from which the share of pairs that do not overlap is taken."""
@@ -40,7 +40,7 @@ class Bodies:
     @cached_property
     def apart(self) -> float:
         """Share of the pairs that do not overlap, from evenly spaced first ones: within 1 % for the tubes of a block."""
-        firsts = np.unique(np.linspace(0, len(self) - 1, FIRSTS).round().astype(int))
+        firsts = evenly_spaced(len(self), FIRSTS)
         return 1 - sum(np.count_nonzero(self.overlaps(int(first))) for first in firsts) / (len(firsts) * len(self))
 
     def overlaps(self, one: int | Array) -> Array:

@@ -8,6 +8,7 @@ from typing import Annotated, ClassVar, Literal, Self
 import numpy as np
 from pydantic import Field
 
+from tactsim.array import evenly_spaced
 from tactsim.experiments.film.scene import CreepCurve, FilmCreepScene
 from tactsim.identification.film_creep import (
     CoefficientLine,
@@ -173,5 +174,5 @@ def _quantities(lines: dict[str, CoefficientLine]) -> dict[str, Quantity]:
 
 def _curve(test: CreepTest) -> CreepCurve:
     """A test thinned for the figure."""
-    kept = np.unique(np.linspace(0, len(test.time) - 1, MOST_DRAWN).astype(int))
+    kept = evenly_spaced(len(test.time), MOST_DRAWN)
     return CreepCurve(force=test.force, time=test.time[kept].tolist(), strain=test.strain[kept].tolist())

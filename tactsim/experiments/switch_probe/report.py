@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from tactsim.array import Array
+from tactsim.array import Array, evenly_spaced
 from tactsim.experiments.switch_probe.run import ProbeTouch, force_noise, thresholds
 from tactsim.experiments.switch_probe.scene import RecordedTouch, SwitchProbeScene
 from tactsim.experiments.switch_probe.setup import COUNT, HISTORY_UNITS, SwitchProbeSetup
@@ -38,8 +38,7 @@ class SwitchProbeReport:
         """Record a touch; the steps of its history."""
         self._touches.append(touch)
         number = 1 + [tissue.name for tissue in self._setup.tissues].index(touch.tissue)
-        even = np.linspace(0, len(touch.time) - 1, POINTS).astype(int)
-        kept = np.union1d(even, int(np.argmax(touch.depth)))
+        kept = np.union1d(evenly_spaced(len(touch.time), POINTS), int(np.argmax(touch.depth)))
         iterations, residual = touch.newton
         new = tuple(
             StepRecord(len(self.steps) + k, iterations, residual, _values(touch, number, int(sample)))

@@ -5,9 +5,7 @@ from __future__ import annotations
 import time
 from typing import Any
 
-import numpy as np
-
-from tactsim.array import Array
+from tactsim.array import Array, evenly_spaced
 from tactsim.dataset.store.arrays import STATUS
 from tactsim.errors import InputError, TactsimError, UnknownName
 from tactsim.live.session.choices import STORED, Choice
@@ -145,7 +143,7 @@ class Selection:
         """Signals that the views draw and forces, (jaw, row, column) in N, at some steps, for the ends of the colour scales."""
         recording, signals = self.recording, []
         count = 0 if recording is None else len(recording.times)
-        for step in np.unique(np.linspace(0, count - 1, min(count, MOST_RANGED)).astype(int)) if count else ():
+        for step in evenly_spaced(count, MOST_RANGED):
             assert recording is not None
             frame = recording.frame(int(step))
             try:

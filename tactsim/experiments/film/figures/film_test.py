@@ -14,7 +14,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import NullFormatter
 
-from tactsim.array import Array
+from tactsim.array import Array, evenly_spaced
 from tactsim.experiments.film.figures.capacitive_test import capacitive_test_figure
 from tactsim.experiments.film.scene import FilmTestScene
 from tactsim.interfaces import Drawing, ResultFigures
@@ -127,7 +127,7 @@ def _inverse(slope: float, intercept: float) -> str:
 
 def _draw_creep(axis: Axes, result: Result) -> None:
     forces, times, resistance = (result.quantities[name].numbers for name in ("forces", "times", "resistance"))
-    chosen = np.unique(np.linspace(0, len(forces) - 1, min(MOST_CURVES, len(forces))).round().astype(int))
+    chosen = evenly_spaced(len(forces), MOST_CURVES)
     colours = colormaps["viridis"](np.linspace(0, 0.85, len(chosen)))
     for k, colour in zip(chosen, colours, strict=True):
         axis.semilogy(times, resistance[:, k] / 1e3, ".-", color=colour, markersize=4, label=f"{forces[k]:.3g} N")

@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm
 from matplotlib.figure import Figure
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 
-from tactsim.array import Array
+from tactsim.array import Array, evenly_spaced
 from tactsim.errors import InputError
 from tactsim.experiments.threshold.scene import ThresholdCapture, ThresholdTrialScene
 from tactsim.interfaces import Drawing, ResultFigures
@@ -57,7 +57,7 @@ class ThresholdTrialFigures(ResultFigures):
 def threshold_error_figure(result: Result) -> Figure:
     """For each noise a map of the error over speed and cut-off, and below what makes the mean error at the middle cut-off."""
     noises = result.scene_as(ThresholdTrialScene).noises
-    shown = np.unique(np.linspace(0, len(noises) - 1, min(len(noises), MOST_MAPS)).round().astype(int))
+    shown = evenly_spaced(len(noises), MOST_MAPS)
     force = result.quantities["threshold_force"].value
     true_force = " to ".join(dict.fromkeys(format_quantity(float(f"{f:.3g}"), "N") for f in (min(force), max(force))))
     words = f"true threshold {true_force}; in the squares: mean ± standard deviation of the error in %"
