@@ -13,7 +13,7 @@ from tactsim.cli import console
 from tactsim.cli.data_actions import CONFUSION, RANKING
 from tactsim.cli.data_actions import EXAMPLES as EXAMPLES
 from tactsim.cli.data_actions import add_arguments as add_arguments
-from tactsim.errors import NOT_AS_RECORDED, InputError, InvalidQuantity, StorageError, TactsimError
+from tactsim.errors import NOT_AS_RECORDED, InputError, StorageError, TactsimError
 from tactsim.outside.defect_place import unless_own
 from tactsim.outside.text import counted, one_line
 
@@ -215,14 +215,11 @@ def _references(arguments: argparse.Namespace) -> list[str]:
 
 def _noise(arguments: argparse.Namespace) -> float | None:
     """What is added to the readings in N, None if nothing is said of it."""
-    from tactsim.units import parse_quantity
+    from tactsim.cli.option_values import quantity_of
 
     if arguments.noise is None:
         return None
-    try:
-        noise = float(parse_quantity(arguments.noise, "N"))
-    except InvalidQuantity as error:
-        raise InvalidQuantity(f"--noise: {error}") from None
+    noise = quantity_of("--noise", arguments.noise, "N")
     if not 0 <= noise < float("inf"):
         raise InputError(f"--noise {arguments.noise}; allowed: a finite force that is not negative, such as '2 mN'")
     return noise

@@ -193,14 +193,11 @@ def _time_limit(text: str | None) -> float | None:
     InvalidQuantity
         If it is no time, or not positive.
     """
-    from tactsim.units import parse_quantity
+    from tactsim.cli.option_values import quantity_of
 
     if text is None:
         return None
-    try:
-        seconds = parse_quantity(text, "s")
-    except InvalidQuantity as error:
-        raise InvalidQuantity(f"--time-limit: {error}") from None
+    seconds = quantity_of("--time-limit", text, "s")
     if seconds <= 0:
         raise InvalidQuantity(f"--time-limit {shown(text)} is out of range; must be above 0 s")
     return seconds

@@ -8,8 +8,8 @@ import sys
 import webbrowser
 
 from tactsim.cli import console
+from tactsim.cli.option_values import quantity_of
 from tactsim.errors import InputError
-from tactsim.units import parse_quantity
 
 
 def run_page(arguments: argparse.Namespace) -> int:
@@ -32,7 +32,7 @@ def run_page(arguments: argparse.Namespace) -> int:
     port, host = arguments.port or 0, LOOPBACK if arguments.host is None else arguments.host
     if not 0 <= port <= 65535:
         raise InputError(f"--port {port}: not a port; allowed: 1 to 65535, or 0 for any that is free")
-    noise = None if arguments.noise is None else parse_quantity(arguments.noise, "N")
+    noise = None if arguments.noise is None else quantity_of("--noise", arguments.noise, "N")
     if noise is not None and noise <= 0:
         raise InputError(f"--noise {arguments.noise}: allowed: more than 0 N")
     live = None if arguments.live is None else FeedPlace.of(arguments.live)

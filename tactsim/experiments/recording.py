@@ -88,8 +88,9 @@ def recorder_for(kind: str, settings: RecordingSettings, most_inclusions: int = 
     own = _recorder_of(kind)
     if own is None and settings.quantities is None:
         raise CaseError(
-            f"sweep.quantities: missing; an experiment of kind {kind} stores what you name, such as quantities: "
-            f"{{max_penetration: m}}; kinds that need none: {', '.join(sorted(recorders()))}"
+            f"sweep.quantities: missing; of an experiment of kind {kind} a sweep stores the quantities that you name with their "
+            "units, those that tactsim run reports of one such case; as in quantities: {max_penetration: m}; "
+            f"kinds that need none: {', '.join(sorted(recorders()))}"
         )
     recorder = own or NamedQuantities
     if settings.times > 1 and not recorder.histories:

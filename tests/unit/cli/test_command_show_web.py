@@ -80,6 +80,7 @@ def test_another_address_is_warned_of(tmp_path: Path) -> None:
         (["{grasp}", "--live", "-"], 2, "--live: for the live page only"),
         (["{grasp}", "--web", "--save", "a.png"], 2, "one at a time"),
         (["{grasp}", "--web", "--noise", "0 N"], 2, "--noise 0 N: allowed: more than 0 N"),
+        (["{grasp}", "--web", "--noise", "2"], 2, "--noise: '2' has no unit"),
         (["{grasp}", "--noise", "2 mN"], 2, "--noise: for the live page only; add --web"),
         (["{grasp}", "--web", "--port", "70000"], 2, "--port 70000: not a port"),
         (["{grasp}", "--web", "--port", "{taken}"], 5, "cannot serve on 127.0.0.1"),

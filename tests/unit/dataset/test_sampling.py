@@ -308,7 +308,7 @@ def test_what_is_possible_in_part_is_drawn_again(tmp_path: Path, old: str, new: 
 
 def test_a_kind_without_recorder_needs_names(tmp_path: Path) -> None:
     text = TEXT.replace("title: A small sweep", "title: x").replace("kind: closed_form", "kind: film_creep")
-    with pytest.raises(CaseError, match=r"sweep\.quantities: missing"):
+    with pytest.raises(CaseError, match=r"sweep\.quantities: missing; .*those that tactsim run reports of one such case"):
         layout_of(sweep_of(tmp_path, text))
 
 
