@@ -48,6 +48,12 @@ class TaxelLayout(FrozenModel):
         return self
 
     @property
+    def in_words(self) -> str:
+        """All of it, such as ``3 x 3 taxels of 9 mm at a pitch of 10 mm``: rows, then columns."""
+        size, pitch = format_quantity(self.size, "m"), format_quantity(self.pitch, "m")
+        return f"{self.rows} x {self.columns} taxels of {size} at a pitch of {pitch}"
+
+    @property
     def area(self) -> float:
         """Area of a taxel in m^2."""
         return self.size**2

@@ -93,13 +93,12 @@ class LearnedWeights:
             Naming both matrices or both blocks.
         """
         if readings.layout != self.layout:
-            raise InputError(
-                f"the estimator was trained on the matrix {self.layout}, the readings are of {readings.layout}; train it anew"
-            )
+            learned, given = self.layout.in_words, readings.layout.in_words
+            raise InputError(f"the estimator was trained on the matrix of {learned}, the readings are of {given}; train it anew")
         if not np.allclose(readings.block_size, self.block_size, rtol=1e-6):
-            learned, given = (np.asarray(size).tolist() for size in (self.block_size, readings.block_size))
+            sizes = [np.asarray(size).tolist() for size in (self.block_size, readings.block_size)]
             raise InputError(
-                f"the estimator was trained on a block of {learned} m, the readings are of one of {given} m; train it anew"
+                f"the estimator was trained on a block of {sizes[0]} m, the readings are of one of {sizes[1]} m; train it anew"
             )
 
     def summary(self) -> str:

@@ -110,4 +110,5 @@ def check_same(size: Array, layout: TaxelLayout, reference: Readings, whose: str
         measured = [" x ".join(format_quantity(float(side), "m") for side in block) for block in (size, reference.block_size)]
         raise InputError(f"the block of {whose} measures {measured[0]}, that of the reference {measured[1]}; needed: the same")
     if layout != reference.layout:
-        raise InputError(f"the matrix of {whose} is {layout}, that of the reference {reference.layout}; needed: the same")
+        given, other = layout.in_words, reference.layout.in_words
+        raise InputError(f"the matrix of {whose} has {given}, that of the reference {other}; needed: the same")
