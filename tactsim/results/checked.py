@@ -10,6 +10,13 @@ import numpy as np
 
 from tactsim.errors import InvalidQuantity, shown
 
+NEEDED_TEXTS = "needed: a tuple of texts, such as ('a text',)"
+
+
+def are_texts(given: object) -> bool:
+    """Whether it is a tuple or list of texts; a text alone is not, as whoever takes it for one takes its letters."""
+    return isinstance(given, tuple | list) and all(isinstance(one, str) for one in given)
+
 
 def checked_texts(given: object, what: str) -> tuple[str, ...]:
     """Texts as a tuple; a single text is one of them, not its letters.
@@ -20,8 +27,8 @@ def checked_texts(given: object, what: str) -> tuple[str, ...]:
         If anything else is given; ``what`` is how the message calls them.
     """
     texts = (given,) if isinstance(given, str) else tuple(given) if isinstance(given, Iterable) else None
-    if texts is None or not all(isinstance(one, str) for one in texts):
-        raise InvalidQuantity(f"{what}: {shown(given)}; needed: a tuple of texts, such as ('a text',)")
+    if texts is None or not are_texts(texts):
+        raise InvalidQuantity(f"{what}: {shown(given)}; {NEEDED_TEXTS}")
     return texts
 
 

@@ -8,15 +8,15 @@ from pydantic import AfterValidator
 
 from tactsim.interfaces import SensorFilm
 from tactsim.registry import Registered
+from tactsim.results.checked import NEEDED_TEXTS, are_texts
 
 
 def _checked(film: SensorFilm) -> SensorFilm:
     """The film, if what it says of itself is texts: the letters of one would be as many assumptions."""
     by_method = {"assumptions": film.assumptions(), "warnings": film.warnings(film.largest_force)}
     for method, texts in by_method.items():
-        if not isinstance(texts, tuple | list) or not all(isinstance(one, str) for one in texts):
-            returned = f"{method}() of {type(film).__name__} returned {texts!r:.60}"
-            raise ValueError(f"{returned}; needed: a tuple of texts, such as ('a text',)")
+        if not are_texts(texts):
+            raise ValueError(f"{method}() of {type(film).__name__} returned {texts!r:.60}; {NEEDED_TEXTS}")
     return film
 
 
