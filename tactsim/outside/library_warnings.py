@@ -21,8 +21,8 @@ class LibraryWarnings:
         self._caught = caught
 
     def lines(self) -> list[str]:
-        """One line for each different warning: which library, what it says, how often."""
-        counts = Counter(f"{_library(one.filename)}: {one_line(one.message, 200)}" for one in self._caught)
+        """One line for each different warning: which library, unless it is this program, what it says, how often."""
+        counts = Counter(_said_by(_library(one.filename)) + one_line(one.message, 200) for one in self._caught)
         most_common = [line if count == 1 else f"{line} ({count} times)" for line, count in counts.most_common(MOST_SHOWN)]
         left = len(counts) - len(most_common)
         return most_common + ([f"and {left} other warnings of libraries"] if left > 0 else [])
@@ -33,6 +33,10 @@ def collected_warnings() -> Iterator[LibraryWarnings]:
     """A block whose Python warnings are collected instead of printed; those that are made errors stay errors."""
     with warnings.catch_warnings(record=True) as caught:
         yield LibraryWarnings(caught)
+
+
+def _said_by(library: str) -> str:
+    return "" if library == "tactsim" else f"{library}: "
 
 
 def _library(filename: str) -> str:
