@@ -28,7 +28,7 @@ from tactsim.interfaces import Inclusion
 from tactsim.interfaces.solid import Triangles
 from tactsim.mesh.affordable import check_unknowns, estimated_unknowns
 from tactsim.mesh.any_inclusion import check_inclusions
-from tactsim.mesh.block import SIZES, BlockMesh, BlockMeshSettings
+from tactsim.mesh.block import OF_GRADED, SIZES, BlockMesh, BlockMeshSettings
 from tactsim.mesh.fitting.curving import fitted
 from tactsim.mesh.fitting.labelling import Surfaces, tidied
 from tactsim.mesh.sizing import at_jaw_edges, background
@@ -107,10 +107,11 @@ def _request(size: Array, inclusions: Sequence[Inclusion], settings: BlockMeshSe
 
 def mesh_key(size: Sequence[float], inclusions: Sequence[Inclusion], settings: BlockMeshSettings) -> str:
     """Sixteen hexadecimal digits that change with the geometry and the settings."""
+    asked = settings.model_dump(exclude={"time_limit"})
     document = {
         "size": [float(length) for length in size],
         "inclusions": [inclusion.identity() for inclusion in inclusions],
-        "settings": settings.model_dump(exclude={"time_limit"}),
+        "settings": {name: value for name, value in asked.items() if (name, value) not in OF_GRADED.items()},
         "revision": REVISION,
     }
     return hashlib.sha256(json.dumps(document, sort_keys=True).encode()).hexdigest()[:16]

@@ -10,7 +10,7 @@ from hard_balls import pressed_balls
 
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.interfaces.taxel_layout import JAWS
-from tactsim.mesh.graded import block as graded_block_module
+from tactsim.mesh.graded import cells as graded_cells
 from tactsim.mesh.graded import lines as graded_lines
 
 SHARE = 0.03
@@ -80,7 +80,7 @@ def over_the_ball():
 
 def with_layers(count, monkeypatch):
     ends = np.arange(1, count) / count
-    monkeypatch.setattr(graded_block_module, "layer_ends", lambda wall, box, settings, fewer: ends)
+    monkeypatch.setattr(graded_cells.Filling, "ends", lambda self, wall, box: ends)
     return over_the_ball() / TETRAHEDRA - 1
 
 
@@ -95,3 +95,56 @@ def test_graded_cells_press_over_a_hard_ball_as_tetrahedra_do(verification_recor
 def test_two_layers_around_a_hard_ball_would_be_too_few(monkeypatch):
     assert with_layers(2, monkeypatch) > LAYERED
     assert with_layers(1, monkeypatch) > 5 * LAYERED
+
+
+HARD = 50.0
+STIFF = {"a tenth": 0.1, "as stiff": 1.0, "thrice": 3.0, "fifty times": HARD}
+"""Modulus of a ball over that of the tissue at rest."""
+TISSUE_C10 = 1.78e3
+"""c10 in Pa of neo-Hookean tissue as stiff at rest as `icf_stable`."""
+SAME = 5e-4
+"""Difference of a taxel over the largest up to which fans and cells are felt alike; these cells are off by 1 %."""
+OF_SWEEPS = {"size": 1e-2, "inclusion_size": 4e-3, "edge_size": 3.2e-3}
+
+
+def closed_on(center: tuple[float, float, float], stiffness: float, **cells: object) -> np.ndarray:
+    """Forces (jaw, row, column) in N after a closing of 1 mm at friction 0.6 on a ball of 4.7 mm, by default with `OF_SWEEPS`."""
+    result = Grasp.model_validate(
+        {
+            "block": {"size": (40e-3, 40e-3, 20e-3), "tissue": "icf_stable"},
+            "inclusions": [
+                {
+                    "shape": {"kind": "sphere", "center": center, "radius": 4.7e-3},
+                    "material": {"kind": "neo_hookean", "c10": stiffness * TISSUE_C10},
+                }
+            ],
+            "matrix": {"rows": 3, "columns": 3, "pitch": 10e-3, "size": 9e-3},
+            "contact": {"kind": "coulomb", "friction": 0.6},
+            "loading": {"control": "displacement", "pieces": [{"kind": "ramp", "to": 1e-3, "duration": 1.0}]},
+            "mesh": {"kind": "graded", **OF_SWEEPS, **cells},
+            "time": {"steps": 1},
+        }
+    ).run()
+    assert result.status == "converged"
+    return np.array([result.quantities[f"taxel_force_{side}"].value for side in JAWS])
+
+
+def apart(found: np.ndarray, known: np.ndarray) -> float:
+    """Largest difference of a taxel over the largest taxel."""
+    return float(np.abs(found - known).max() / known.max())
+
+
+FAR_OFF = 18e-3, 22e-3, 8.1e-3
+SOFTER = [pytest.param(ratio, id=name, marks=pytest.mark.slow) for name, ratio in STIFF.items() if ratio != HARD]
+
+
+@pytest.mark.parametrize("stiffness", [*SOFTER, pytest.param(HARD, id="fifty times")])
+def test_a_fan_in_a_ball_is_felt_as_cells_are(stiffness, verification_record):
+    found = apart(closed_on(FAR_OFF, stiffness, filling="fan"), closed_on(FAR_OFF, stiffness))
+    assert found < SAME
+    known = {"reference": "cells in the ball", "kind": "invariance", "mesh": "graded, cells of the sweeps", "tolerance": SAME}
+    verification_record(f"taxels over a fan {stiffness:g} times as stiff as the tissue", found, 0.0, scale=1.0, **known)
+
+
+def test_a_ball_a_tenth_as_stiff_would_be_felt_otherwise():
+    assert apart(closed_on(FAR_OFF, HARD / 10), closed_on(FAR_OFF, HARD, filling="fan")) > SAME

@@ -24,7 +24,7 @@ from tactsim.mesh.block import SIZES, BlockMesh, BlockMeshSettings
 from tactsim.mesh.fitting.curving import SMALLER, fitted
 from tactsim.mesh.graded.beside_jaws import Footprint, footprint_of, widened
 from tactsim.mesh.graded.bricks import brick_cells, bricks_of, check_apart
-from tactsim.mesh.graded.cells import LEAST_LAYERS, Cells, Layering, from_boxes, layer_ends, with_lump
+from tactsim.mesh.graded.cells import LEAST_LAYERS, Cells, Filling, from_boxes, with_lump
 from tactsim.mesh.graded.lines import Line, lines_around, mirrored_line
 from tactsim.mesh.graded.lump import Lump
 from tactsim.mesh.graded.rings import BALL_REGION, swept_cells
@@ -73,10 +73,11 @@ def graded_block(
         return finished(cells.corners, _sixths(cells.cells, _order(cells.places)), np.zeros(6 * len(cells.cells), np.int64))
     reason: ConvergenceError | None = None
     for finer, fewer in itertools.product(range(ATTEMPTS), range(LEAST_LAYERS)):
-        cells = _cells(inclusions, footprint, finer, partial(layer_ends, settings=settings, fewer=fewer))
+        cells = _cells(inclusions, footprint, finer, Filling(settings, fewer))
         simplices = _sixths(cells.cells, _order(cells.places))
+        whole = (np.diff(np.sort(simplices, axis=1), axis=1) > 0).all(axis=1)  # a cell of a fan makes two
         try:
-            mesh = finished(cells.corners, simplices, np.repeat(cells.regions, 6), layers=cells.layers)
+            mesh = finished(cells.corners, simplices[whole], np.repeat(cells.regions, 6)[whole], layers=cells.layers)
             return replace(mesh, fewer_layers=fewer)
         except ConvergenceError as error:
             reason = error
@@ -178,17 +179,17 @@ def _sorted(inclusions: Sequence[Inclusion], extent: Array) -> tuple[list[Lump],
     return lumps, tubes
 
 
-def _cells(inclusions: Sequence[Inclusion], footprint: Footprint, finer: int, layering: Layering) -> Cells:
+def _cells(inclusions: Sequence[Inclusion], footprint: Footprint, finer: int, filling: Filling) -> Cells:
     """Cells around the inclusions, their regions numbered as these."""
     between = _between(inclusions, footprint)
     footprint = between.footprint
     if between.tubes:
         bundle, order = _bundle(between, finer)
         _check_size(footprint, [count - 1 for count in bundle.grid.shape[:3]], bundle.sections.axes)
-        cells = swept_cells(bundle, layering)
+        cells = swept_cells(bundle, filling)
         cells = replace(cells, regions=_numbered(cells.regions, order, inclusions, footprint.block))
     else:
-        cells = _cells_of_lumps(between, finer, layering)
+        cells = _cells_of_lumps(between, finer, filling)
     return widened(cells, footprint)
 
 
@@ -211,16 +212,16 @@ def _numbered(regions: Array, order: Array, inclusions: Sequence[Inclusion], ext
     return labels
 
 
-def _cells_of_lumps(between: _Between, finer: int, layering: Layering) -> Cells:
+def _cells_of_lumps(between: _Between, finer: int, filling: Filling) -> Cells:
     """Cells around one lump, or around several."""
     lumps, size, settings = between.lumps, between.footprint.size, between.footprint.settings
     if len(lumps) == 1:
         around = lines_around(lumps[0].ball, lumps[0].bounds, size, settings, finer)
         _check_size(between.footprint, [len(line.near) - 1 for line in around])
-        return _around(lumps[0].ball, around, layering)
+        return _around(lumps[0].ball, around, filling)
     bricks = bricks_of(lumps, size, settings, finer)
     _check_size(between.footprint, [len(away) - 1 for away in bricks.away])
-    return brick_cells(bricks, layering)
+    return brick_cells(bricks, filling)
 
 
 def _check_size(footprint: Footprint, cells: Sequence[int], axes: Sequence[int] = (0, 1, 2)) -> None:
@@ -229,14 +230,14 @@ def _check_size(footprint: Footprint, cells: Sequence[int], axes: Sequence[int] 
     check_unknowns(unknowns_of_cells((more + cells).tolist()), SIZES)
 
 
-def _around(ball: BallImage, lines: Sequence[Line], layering: Layering) -> Cells:
+def _around(ball: BallImage, lines: Sequence[Line], filling: Filling) -> Cells:
     """Cells of a block with a lump, which is region 1."""
     first, shape = np.array([[line.first] for line in lines]), tuple(len(line.near) for line in lines)
     across = [line.across for line in lines]
     places = product([from_boxes(len(line.near), line.first, line.across) for line in lines])
     outside = Cells.plain(*_around_box(lines), places)
     return with_lump(
-        outside, ball, across, lambda steps: np.ravel_multi_index(tuple(steps + first), shape), layering, region=1
+        outside, ball, across, lambda steps: np.ravel_multi_index(tuple(steps + first), shape), filling, region=1
     ).used()
 
 

@@ -26,7 +26,7 @@ from tactsim.array import Array
 from tactsim.errors import InputError
 from tactsim.mesh.affordable import check_along
 from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.graded.cells import Cells, Layering, from_boxes, with_lump
+from tactsim.mesh.graded.cells import Cells, Filling, from_boxes, with_lump
 from tactsim.mesh.graded.lines import (
     LEAST_BETWEEN,
     NEAR,
@@ -234,7 +234,7 @@ def _away(line: Array, first: Array, across: int) -> Array:
     return away
 
 
-def brick_cells(bricks: Bricks, layering: Layering) -> Cells:
+def brick_cells(bricks: Bricks, filling: Filling) -> Cells:
     """Cells around lumps: the lump k, counted from 0, is region k + 1, the tissue 0."""
     shape = tuple(len(away) for away in bricks.away)
     counts = [planes - 1 for planes in shape]
@@ -247,7 +247,7 @@ def brick_cells(bricks: Bricks, layering: Layering) -> Cells:
     for number, (lump, first) in enumerate(zip(bricks.lumps, bricks.first, strict=True), 1):
         on_box = partial(_on_box, first=first, shape=shape)
         turned = partial(_leaning, lump=lump, bricks=bricks)
-        cells = with_lump(cells, lump.ball, bricks.shared.tolist(), on_box, layering, region=number, turned=turned)
+        cells = with_lump(cells, lump.ball, bricks.shared.tolist(), on_box, filling, region=number, turned=turned)
     return cells.used()
 
 

@@ -23,9 +23,6 @@ LAYER_GROWTH = 1.25
 CORE_PLACE, WALL_PLACE = 0.4, 0.8
 """Distances from the middle of the box, of which the sides are one away, at which core and wall count when cells are split."""
 
-Layering = Callable[[Array, Array], Array]
-"""`layer_ends` of given settings: from corners of a body and of its box to the parts of the distance at which layers end."""
-
 
 @dataclass(frozen=True)
 class Cells:
@@ -58,6 +55,46 @@ class Cells:
         return Cells(self.corners[used], cells, self.regions, self.places[used], self.layers.kept(used))
 
 
+@dataclass(frozen=True)
+class Filling:
+    """What boxes around bodies are filled with.
+
+    Attributes
+    ----------
+    settings : of the mesh
+    fewer : layers than are usual, where bodies are too close for these
+    """
+
+    settings: BlockMeshSettings
+    fewer: int = 0
+
+    @property
+    def fans(self) -> bool:
+        """Whether lumps hold a fan about their middle: cells of which one side has shrunk to it."""
+        return self.settings.filling == "fan"
+
+    def ends(self, wall: Array, box: Array) -> Array:
+        """Where layers between corners (..., 3) in m of a body and those of its box end, as ascending parts of the distance.
+
+        There are `LEAST_LAYERS`, and more where cells that grow from the size at inclusions to that of the block find room for
+        them; less those that are to be ``fewer``.
+
+        Raises
+        ------
+        InputError
+            If the cells are too many.
+        """
+        settings, distance = self.settings, float(np.linalg.norm(box - wall, axis=-1).mean())
+        steps = [settings.inclusion_size]
+        while (further := min(steps[-1] * LAYER_GROWTH, settings.size)) + sum(steps) <= distance:
+            steps.append(further)
+            check_along(len(steps), f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
+        count = max(LEAST_LAYERS, len(steps)) - self.fewer
+        if count != len(steps):
+            steps = list(LAYER_GROWTH ** np.arange(count))
+        return np.asarray(np.cumsum(steps)[:-1] / np.sum(steps))
+
+
 def from_boxes(lines: int, first: ArrayLike, across: int) -> Array:
     """Places (lines,) of lines from the middle of the nearest box, whose sides are one away; boxes begin at lines ``first``."""
     steps = np.abs(np.arange(lines)[:, None] - np.atleast_1d(first) - across / 2)
@@ -74,34 +111,12 @@ def layer_places(unit: Array, ends: Array) -> list[Array]:
     return [(WALL_PLACE + (1 - WALL_PLACE) * end) * np.abs(unit) for end in (0.0, *ends)]
 
 
-def layer_ends(wall: Array, box: Array, settings: BlockMeshSettings, fewer: int = 0) -> Array:
-    """Where layers between corners (..., 3) in m of a body and those of its box end, as ascending parts of the distance below 1.
-
-    There are `LEAST_LAYERS`, and more where cells that grow from the size at inclusions to that of the block find room for them;
-    less those that are to be ``fewer``.
-
-    Raises
-    ------
-    InputError
-        If the cells are too many.
-    """
-    distance = float(np.linalg.norm(box - wall, axis=-1).mean())
-    steps = [settings.inclusion_size]
-    while (further := min(steps[-1] * LAYER_GROWTH, settings.size)) + sum(steps) <= distance:
-        steps.append(further)
-        check_along(len(steps), f"mesh.inclusion_size {settings.inclusion_size:.3g} m")
-    count = max(LEAST_LAYERS, len(steps)) - fewer
-    if count != len(steps):
-        steps = list(LAYER_GROWTH ** np.arange(count))
-    return np.asarray(np.cumsum(steps)[:-1] / np.sum(steps))
-
-
 def with_lump(
     cells: Cells,
     ball: BallImage,
     across: Sequence[int],
     on_box: Callable[[Array], Array],
-    layering: Layering,
+    filling: Filling,
     *,
     region: int,
     turned: Callable[[Array], Array] = np.asarray,
@@ -112,7 +127,7 @@ def with_lump(
     ----------
     across : (3,) cells of the box along x, y and z
     on_box : numbers (s,) of the corners on the sides of the box, of which steps (3, s) from its first corner are given
-    layering : where layers end
+    filling : of the box
     region : of the lump
     turned : moves points (n, 3) of the unit ball
     """
@@ -122,9 +137,12 @@ def with_lump(
     sides = on_box(np.stack(np.unravel_index(shell, np.add(across, 1))))
     inside, unit = blown(logical), directions(logical[shell])
     wall, box = ball.center + turned(unit) @ ball.stretch, cells.corners[sides]
-    ends = layering(wall, box)
+    ends = filling.ends(wall, box)
     between = [wall + share * (box - wall) for share in ends]
-    added, rounded, depth = stacked(ball.center + turned(inside) @ ball.stretch, shell, quads, core, [wall, *between, box])
+    innermost = shell
+    if filling.fans:
+        inside, core, innermost = np.zeros((1, 3)), core[:0], np.zeros_like(shell)
+    added, rounded, depth = stacked(ball.center + turned(inside) @ ball.stretch, innermost, quads, core, [wall, *between, box])
     count, fresh = len(cells.corners), len(added) - len(shell)
     places = np.vstack([CORE_PLACE * np.abs(inside), *layer_places(unit, ends)])
     return Cells(

@@ -22,7 +22,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.mesh.fitting.layers import Layers
-from tactsim.mesh.graded.cells import CORE_PLACE, WALL_PLACE, Cells, Layering, from_box, from_boxes, layer_places, with_lump
+from tactsim.mesh.graded.cells import CORE_PLACE, WALL_PLACE, Cells, Filling, from_box, from_boxes, layer_places, with_lump
 from tactsim.mesh.graded.side_by_side import Bundle
 from tactsim.mesh.structured_block import blown, directions, product
 
@@ -56,7 +56,7 @@ class Plane:
     layers: Layers
 
 
-def _plane_of(bundle: Bundle, layering: Layering) -> Plane:
+def _plane_of(bundle: Bundle, filling: Filling) -> Plane:
     """The cells of all planes."""
     n, w, t, _ = bundle.grid.shape
     number = np.arange(w * t).reshape(w, t)
@@ -76,7 +76,7 @@ def _plane_of(bundle: Bundle, layering: Layering) -> Plane:
         disc = _disc(bundle.across, bundle.wall[k])
         placed, count = _placed_disc(disc, bundle, k), len(layers.beneath)
         wall, box = placed[:, -len(loop) :], points[0][:, loop]
-        ends = layering(wall, box)
+        ends = filling.ends(wall, box)
         points += [placed, *(wall + end * (box - wall) for end in ends)]
         layers = layers.with_body(len(disc) - len(loop), loop, ends)
         quads, depth = _disc_cells(bundle.across, loop, count, bundle.wall[k] + len(ends))
@@ -150,12 +150,12 @@ def _disc_places(disc: Array, wall: int) -> Array:
     return (CORE_PLACE + (WALL_PLACE - CORE_PLACE) * share)[:, None] * np.abs(disc[:, :2])
 
 
-def swept_cells(bundle: Bundle, layering: Layering) -> Cells:
+def swept_cells(bundle: Bundle, filling: Filling) -> Cells:
     """Cells around tubes, split by their places along the tubes and across.
 
     The wall of the tube k of the bundle is the region k + 1, the space in it -2 - k, the tissue 0, the ball ``BALL_REGION``.
     """
-    plane, axes = _plane_of(bundle, layering), bundle.sections.axes
+    plane, axes = _plane_of(bundle, filling), bundle.sections.axes
     planes, count, _ = plane.points.shape
     corners = np.empty((planes * count, 3))
     corners[:, list(axes)] = plane.points.reshape(-1, 3)
@@ -171,7 +171,7 @@ def swept_cells(bundle: Bundle, layering: Layering) -> Cells:
     places = np.column_stack([_along(bundle, count).ravel(), np.tile(plane.logical, (planes, 1))])
     kept = ~((index >= bundle.planes[0]) & (index < bundle.planes[1]) & (plane.owner == BALL)).ravel()
     swept = Cells(corners, cells[kept], regions.ravel()[kept], places, plane.layers.repeated(planes))
-    return (_with_ball(swept, bundle, count, layering) if bundle.ball is not None else swept).used()
+    return (_with_ball(swept, bundle, count, filling) if bundle.ball is not None else swept).used()
 
 
 def _along(bundle: Bundle, count: int) -> Array:
@@ -186,7 +186,7 @@ def _along(bundle: Bundle, count: int) -> Array:
     return places
 
 
-def _with_ball(cells: Cells, bundle: Bundle, count: int, layering: Layering) -> Cells:
+def _with_ball(cells: Cells, bundle: Bundle, count: int, filling: Filling) -> Cells:
     """The same with the cells of the box of the ball, in planes of ``count`` corners each."""
     assert bundle.ball is not None
     axes, first = list(bundle.sections.axes), bundle.first[np.flatnonzero(bundle.bodies < 0)[0]]
@@ -196,5 +196,5 @@ def _with_ball(cells: Cells, bundle: Bundle, count: int, layering: Layering) -> 
         return (bundle.planes[0] + plane) * count + (first[0] + second) * bundle.grid.shape[2] + first[1] + third
 
     before = len(cells.corners)
-    added = with_lump(cells, bundle.ball.ball, [bundle.across] * 3, on_box, layering, region=BALL_REGION)
+    added = with_lump(cells, bundle.ball.ball, [bundle.across] * 3, on_box, filling, region=BALL_REGION)
     return replace(added, places=np.vstack([cells.places, added.places[before:, axes]]))

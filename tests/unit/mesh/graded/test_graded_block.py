@@ -15,7 +15,7 @@ from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.fitting.layers import Layers
 from tactsim.mesh.graded import bricks
 from tactsim.mesh.graded.block import graded_block, graded_misfit
-from tactsim.mesh.graded.cells import LAYER_GROWTH, LEAST_LAYERS, layer_ends
+from tactsim.mesh.graded.cells import LAYER_GROWTH, LEAST_LAYERS, Filling
 from tactsim.mesh.inclusions.ellipsoid import Ellipsoid
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.mesh.inclusions.surface import Surface
@@ -108,12 +108,12 @@ NO_BULGES = np.zeros(0, np.int64), np.zeros((0, 2), np.int64), np.zeros((0, 3))
 
 def test_smaller_cells_make_more_layers():
     wall, box = np.zeros((4, 3)), np.full((4, 3), [0.0, 0.0, 4e-3])
-    assert len(layer_ends(wall, box, COARSE)) == LEAST_LAYERS - 1
-    ends = layer_ends(wall, box, COARSE.model_copy(update={"inclusion_size": 0.5e-3}))
+    assert len(Filling(COARSE).ends(wall, box)) == LEAST_LAYERS - 1
+    ends = Filling(COARSE.model_copy(update={"inclusion_size": 0.5e-3})).ends(wall, box)
     assert len(ends) == LEAST_LAYERS  # 0.5 + 0.63 + 0.78 + 0.98 mm
     steps = np.diff([0.0, *ends, 1.0])
     np.testing.assert_allclose(steps[1:] / steps[:-1], LAYER_GROWTH)
-    assert len(layer_ends(wall, box, COARSE, fewer=2)) == 0
+    assert len(Filling(COARSE, fewer=2).ends(wall, box)) == 0
 
 
 def test_a_turned_ellipsoid_is_followed():
