@@ -36,6 +36,8 @@ LARGEST_GROWTH = 2.4
 """Ratio of two steps beyond which no parabola is fitted: 1 + sqrt 2 is the limit of stability of such formulas."""
 ALL_BUT_GONE = 0.01
 """Part of the lasting stress below which the whole stress is no measure of an error."""
+SMALL = 1e-2
+"""Step over a relaxation time below which psi is taken from its series."""
 MOST_EARLIER = 3
 """States that the error of a step needs."""
 IN_SECTION = 4
@@ -200,7 +202,9 @@ def step_error(body: Body, variables: HistoryVariables, least: float = 0.0) -> f
 
 
 def _bend_weight(h: Array) -> Array:
-    """psi, by its series where the formula cancels."""
-    small = h < 1e-2
+    r"""psi, by its series :math:`\sum_{k \ge 1} (-1)^{k+1} k h^k / (2 (k + 2)!)` where the formula cancels: at ``SMALL``
+    the round-off of the formula is some 1e-11 of it, and what the series leaves out 1e-13."""
+    small = h < SMALL
     safe = np.where(small, 1.0, h)
-    return np.where(small, h / 12 - h**2 / 24, (1 + np.exp(-safe)) / (2 * safe) + np.expm1(-safe) / safe**2)
+    series = h * (1 / 12 - h * (1 / 24 - h * (1 / 80 - h * (1 / 360 - h / 2016))))
+    return np.where(small, series, (1 + np.exp(-safe)) / (2 * safe) + np.expm1(-safe) / safe**2)
