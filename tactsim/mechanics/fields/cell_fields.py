@@ -6,7 +6,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.fem.assembly.body import Body
-from tactsim.fem.assembly.history_variables import mean_stress
+from tactsim.fem.assembly.history_variables import elastic_stress, mean_stress
 from tactsim.materials.stability import principal_stretches
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.fields.ellipticity import elliptic_in
@@ -28,12 +28,14 @@ def pressures(body: Body, state: ContactEquilibrium, isochoric: Array | None) ->
     """Pressure in Pa, compression positive: at the pressure unknowns, and at the nodes (n,) as the mean of the regions that meet
     at a corner; 0 at the nodes between corners.
 
-    It is the mean stress, to which the trace of the relaxed ``isochoric`` stress (6, E, Q) in Pa counts in the deformed state.
+    It is the mean stress, to which the trace of the relaxed ``isochoric`` stress (6, E, Q) in Pa counts in the deformed state, by
+    default that of the energy: both hold the resistance of `Body` to the change of volume that its pressure does not ask for.
     """
+    if isochoric is None:
+        isochoric = elastic_stress(body, state.kinematics, state.unknowns)
     u, p = body.space.split(state.unknowns)
-    at_corners, at_nodes, corners = -p, np.zeros(len(u)), body.space.pressure_corners
-    if isochoric is not None:
-        at_corners = at_corners - _corner_means(body, mean_stress(body, state.kinematics, isochoric))
+    at_corners = -p - _corner_means(body, mean_stress(body, state.kinematics, isochoric))
+    at_nodes, corners = np.zeros(len(u)), body.space.pressure_corners
     at_nodes[: body.space.corner_count] = np.bincount(corners, at_corners) / np.bincount(corners)
     return at_corners, at_nodes
 

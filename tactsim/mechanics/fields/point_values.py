@@ -24,10 +24,11 @@ MOST_ITERATIONS = 20
 def cauchy_stress(body: Body, unknowns: Array, kinematics: Kinematics, isochoric: Array | None = None) -> Array:
     """Cauchy stress (3, 3, E, Q) in Pa at the volume points; on an axisymmetric body the components are r, z and hoop.
 
-    ``isochoric`` (6, E, Q) is the relaxed second Piola-Kirchhoff stress in Pa; by default that of the energy. The stress of
-    linear elasticity is per reference area, as that theory has it.
+    ``isochoric`` (6, E, Q) is the relaxed second Piola-Kirchhoff stress in Pa; by default that of the energy. Either holds the
+    resistance of `Body` to the change of volume that its pressure does not ask for: without it the forces of this stress would
+    not be those that are in balance. The stress of linear elasticity is per reference area, as that theory has it.
     """
-    stress = elastic_stress(body, kinematics) if isochoric is None else isochoric
+    stress = elastic_stress(body, kinematics, unknowns) if isochoric is None else isochoric
     S, F = stress[FULL], kinematics.F
     linear = body.linear[None, None, :, None]
     spatial = np.where(linear, S, np.einsum("iJeq,JKeq,kKeq->ikeq", F, S, F) / kinematics.J)
