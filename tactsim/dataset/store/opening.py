@@ -18,7 +18,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import META, PENDING, ArrayDescription, described, index_fault, read_json, refuse_link
-from tactsim.errors import StorageError
+from tactsim.errors import OutOfMemory, StorageError
 from tactsim.outside.extras import extras_named
 from tactsim.outside.files import Unreadable, opened_folder
 from tactsim.outside.text import one_line
@@ -49,7 +49,7 @@ ARRAYS = "arrays"
 missing one is a loss; earlier stores left out chunks of nothing but the fill value."""
 NAME = re.compile(r"\w[\w.-]{0,254}")
 """Names of variables, which are names of folders."""
-DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError, MemoryError)
+DAMAGE = (OSError, ValueError, LookupError, TypeError, AttributeError, RuntimeError, ArithmeticError)
 """What Zarr and its codecs raise on content that they cannot read."""
 
 
@@ -85,8 +85,7 @@ class Store:
 
         folder = _folder(path)
         refuse_few_descriptors(folder, SPARE)
-        attributes = read_attributes(folder)
-        readable, faults = _arrays(folder, attributes)
+        readable, faults = _arrays(folder, read_attributes(folder))
         if not damaged and faults:
             raise StorageError(next(iter(faults.values())))
         if "status" not in readable and not damaged:
@@ -182,13 +181,15 @@ def reading(place: Path) -> Iterator[None]:
 
     Raises
     ------
-    StorageError
-        If the block meets damaged content.
+    StorageError, OutOfMemory
+        If the block meets damaged content, or the memory does not suffice for it.
     """
     try:
         yield
     except StorageError:
         raise
+    except MemoryError as error:
+        raise OutOfMemory(f"the memory does not suffice to read {one_line(place)}; read fewer variables or samples") from error
     except DAMAGE as error:
         raise StorageError(
             f"{one_line(place)} is damaged or cannot be read: {type(error).__name__}: {one_line(error, 200)}; bring back a copy"
@@ -270,8 +271,7 @@ def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDe
             readable[name] = described(folder, name)
         except StorageError as error:
             faults[name] = str(error)
-    status = readable.get("status")  # which may be found to be at fault itself
-    if status is not None:
+    if (status := readable.get("status")) is not None:  # which may be found to be at fault itself
         for name in sorted(readable):
             if fault := index_fault(readable[name], status.shape[0], status.chunks[0]):
                 faults[name] = f"{one_line(folder / name / META)} is damaged: {fault}; bring back a copy of it"

@@ -41,7 +41,7 @@ from tactsim.dataset.store.writing import chunk_samples, set_attributes
 from tactsim.dataset.use.card import description
 from tactsim.dataset.use.counts import redrawn, split_counts
 from tactsim.dataset.use.loading import load
-from tactsim.errors import CaseError, InputError, StorageError, TactsimError
+from tactsim.errors import CaseError, InputError, OutOfMemory, StorageError, TactsimError
 from tactsim.interfaces.seeds import seeds_in
 from tactsim.interfaces.variable import Variable
 from tactsim.results.folder import claimed
@@ -165,6 +165,16 @@ def test_a_second_sweep_is_refused_while_the_first_runs(tmp_path: Path) -> None:
         run_sweep(sweep, place, resume=True)
     (tmp_path / ".s.zarr.lock").write_text("what a dead process left")
     run_sweep(sweep, place, resume=True)
+
+
+def test_too_little_memory_is_not_called_damage(whole: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def full(*_: object) -> None:
+        raise MemoryError("Unable to allocate 12 GiB")
+
+    store = Store.open(whole)
+    monkeypatch.setattr(type(store.files), "rows", full)
+    with pytest.raises(OutOfMemory, match=r"the memory does not suffice to read .*status; read fewer variables or samples"):
+        store.read("status")
 
 
 def test_an_existing_store_needs_resume_and_the_same_sweep(whole: Path, tmp_path: Path) -> None:
