@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import meshio
 import numpy as np
 import pytest
@@ -9,6 +11,7 @@ import pytest
 from tactsim.errors import ConvergenceError, InputError
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.space import TaylorHood
+from tactsim.fem.equilibrium.diagnosis import collapsed_in_words
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.block_file import FileSource
@@ -64,6 +67,20 @@ def test_a_second_hole_beside_a_lumen_is_refused(tmp_path):
 
 def test_a_whole_mesh_is_taken(tmp_path):
     assert len(written(tmp_path / "whole.vtu", everything).sourced(SIZE, ()).block.mesh.elements)
+
+
+def test_a_pressure_that_asks_for_no_volume_hides_no_element_that_has_collapsed():
+    mesh = structured_block(SIZE, (4, 1, 1)).mesh
+    body = Body(TaylorHood(mesh.nodes, mesh.elements, "solid"), [NeoHookean(c10=1000.0, bulk_modulus=1e4)], mesh.regions)
+    flat, state = np.zeros(body.space.size), body.kinematics(np.zeros(body.space.size))
+    J = state.J.copy()
+    J[7] = 0.1
+    assert collapsed_in_words(body, replace(state, J=J), flat).startswith("element 7 at")
+    asking = flat.copy()
+    body.space.split(asking)[1][body.space.pressures[-1, 0]] = -1e6  # far from element 7
+    assert body.pressure(asking).min() < -1e4
+    assert collapsed_in_words(body, replace(state, J=J), asking).startswith("element 7 at")
+    assert collapsed_in_words(body, state, asking) is None
 
 
 class Breaking(NeoHookean):

@@ -39,10 +39,11 @@ def collapsed_in_words(body: Body, kinematics: Kinematics, unknowns: Array) -> s
 
     ``unknowns`` (size,) have this deformation.
     """
-    asked = np.maximum(1 + body.compliance[:, None] * body.pressure(unknowns), 0.0)
-    kept = np.where(body.linear, np.inf, (kinematics.J / np.where(asked > 0, asked, np.inf)).min(axis=1))
+    asked = 1 + body.compliance[:, None] * body.pressure(unknowns)
+    meant = ~body.linear & (asked > 0).all(axis=1)  # where a pressure asks for no volume, no part of it is kept
+    kept = np.where(meant, (kinematics.J / np.where(asked > 0, asked, np.inf)).min(axis=1), np.inf)
     element = int(kept.argmin())
-    if kept[element] >= COLLAPSED or asked[element].min() <= 0:
+    if kept[element] >= COLLAPSED:
         return None
     return f"{element_in_words(body, element)} has kept {100 * kept[element]:.0f} % of its volume"
 
