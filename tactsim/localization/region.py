@@ -91,7 +91,7 @@ class CellRegion(Region):
         return bool(self.inside(probability)[tuple(index)])
 
     def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
-        """Diameter in m of the disc as large as the plan of the region's cells, and their height in m."""
+        """Diameter in m of the disc as large as the plan of the region's cells, and height in m of all layers that hold some."""
         chosen = self.inside(probability)
         area = float(chosen.any(axis=2).sum() * self.cell[0] * self.cell[1])
         return 2 * float(np.sqrt(area / np.pi)), float(chosen.any(axis=(0, 1)).sum() * self.cell[2])
@@ -175,7 +175,7 @@ class OutlinedRegion(Region):
         return all(_within(np.delete(point, away), self.outlines.get(view, ())) for view, away in AWAY.items())
 
     def sizes(self, probability: float = LEVEL) -> tuple[float, float]:
-        """Diameter in m of the disc as large as the outlines from above, and height in m of those from the front.
+        """Diameter in m of the disc as large as the outlines from above, and height in m of those from the front, without gaps.
 
         Raises
         ------
@@ -185,8 +185,12 @@ class OutlinedRegion(Region):
         self._check(probability)
         lines = map(np.asarray, self.outlines.get("top", ()))  # a hole is outlined the other way round
         area = abs(sum((line[:-1, 0] * line[1:, 1] - line[:-1, 1] * line[1:, 0]).sum() for line in lines)) / 2
-        heights = np.concatenate([np.asarray(line)[:, 1] for line in self.outlines.get("front", ())] or [np.zeros(1)])
-        return 2 * float(np.sqrt(area / np.pi)), float(np.ptp(heights))
+        heights = [np.asarray(line)[:, 1] for line in self.outlines.get("front", ())]
+        height, reached = 0.0, -np.inf
+        for low, high in sorted((float(along.min()), float(along.max())) for along in heights):
+            height += max(0.0, high - max(low, reached))
+            reached = max(reached, high)
+        return 2 * float(np.sqrt(area / np.pi)), height
 
     def shadow(self, away: int, probability: float = LEVEL) -> list[Array]:
         """The outlines (n, 2) in m as they were kept.

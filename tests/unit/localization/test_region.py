@@ -96,6 +96,16 @@ def test_a_kept_region_is_the_one_that_was_written():
         kept.contains(mean, 0.5)
 
 
+@pytest.mark.parametrize("layers", [[1, 2, 6], [1, 2, 3], [0, 4, 8]])
+def test_what_lies_between_the_parts_of_a_region_adds_nothing_to_its_height_kept_or_not(layers):
+    """The whole extent was the height of a kept region, that of the layers that hold cells of it the height of the other."""
+    weights = np.zeros((6, 6, 9))
+    weights[2:4, 2:4, layers] = 1.0
+    whole = CellRegion(tuple(np.arange(count) * 1e-3 for count in weights.shape), weights)
+    assert whole.sizes()[1] == pytest.approx(3e-3)
+    assert OutlinedRegion(shadows(whole)).sizes()[1] == pytest.approx(3e-3)
+
+
 def test_a_hole_of_a_kept_region_does_not_count():
     """The hole was added to the plan instead of taken from it."""
     axes = tuple(np.arange(count) * 1e-3 for count in (12, 12, 2))
