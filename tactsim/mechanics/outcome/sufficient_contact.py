@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, field, fields, replace
 
 import numpy as np
 
@@ -23,6 +23,13 @@ LARGEST_LOAD = 1 - 1e-9
 """Part of the largest load from which on a state is one at the largest load."""
 
 
+@dataclass(frozen=True)
+class _Followed(ContactEquilibrium):
+    """A state with the ``effect`` of penetration in it, beside the states that led there and no others."""
+
+    effect: PenetrationEffect = field(default_factory=PenetrationEffect)
+
+
 class SufficientContact:
     """A problem of equilibrium whose states at the largest load are held to the error of the force that a success may have.
 
@@ -37,8 +44,7 @@ class SufficientContact:
 
     def __init__(self, problem: EquilibriumProblem, largest: float, stiffest: float = math.inf):
         self._problem, self._largest = problem, largest
-        self._effect = PenetrationEffect(stiffest)
-        self._accepted: ContactEquilibrium | None = None
+        self._at_rest = PenetrationEffect(stiffest)
 
     @property
     def body(self) -> Body:
@@ -57,12 +63,10 @@ class SufficientContact:
         ConvergenceError
             If there is none that Newton finds.
         """
-        if now is not self._accepted:
-            self._accepted = now
-            self._effect = self._effect.after(now)
+        before = now.effect if isinstance(now, _Followed) else self._at_rest.after(now)
         reached = self._problem.equilibrium(now, loads, guess, relaxation)
         for _ in range(MOST_TIGHTENINGS if loads[0] >= LARGEST_LOAD * self._largest else 0):
-            error = self._effect.after(reached).share  # a step that may be taken back
+            error = before.after(reached).share
             if error <= LARGEST_FORCE_ERROR:
                 break
             start = _tightened(now, reached, error)
@@ -70,7 +74,8 @@ class SufficientContact:
                 reached = self._problem.equilibrium(start, loads, np.append(reached.unknowns, reached.load), relaxation)
             except ConvergenceError:
                 break
-        return reached
+        known = {one.name: getattr(reached, one.name) for one in fields(ContactEquilibrium)}
+        return _Followed(**known, effect=before.after(reached))
 
 
 def _tightened(now: ContactEquilibrium, reached: ContactEquilibrium, error: float) -> ContactEquilibrium:

@@ -9,6 +9,7 @@ import pytest
 
 from tactsim.experiments.grasp import path, setup
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.outcome import sufficient_contact
 from tactsim.mechanics.outcome.success import LARGEST_FORCE_ERROR
 from tactsim.results.result import Result, Status
@@ -50,14 +51,14 @@ def test_a_tolerance_that_was_asked_for_stays(coarse_default: None) -> None:
     assert asked.run().status is Status.FAILED
 
 
-def pressing(force: float) -> SimpleNamespace:
-    """A state under a force in N of which penetration takes away 2 %."""
+def pressing(force: float) -> ContactEquilibrium:
+    """A state under a force in N of which penetration takes away 2 %, and which took three linear systems."""
     pressure, weights = np.array([force]), np.ones(1)
     state = SimpleNamespace(pressure=pressure, tangential=np.zeros((1, 1)), traction=pressure[None], points=None, creep=0.0)
     pair = SimpleNamespace(body=SimpleNamespace(signed_distance=lambda _points: (np.array([-0.02]),)))
     surface = SimpleNamespace(points=SimpleNamespace(weights=weights), total=lambda traction: traction @ weights)
     contact = SimpleNamespace(state=state, pair=pair, surface=surface, growth=None)
-    return SimpleNamespace(contacts=(contact,), load=1.0, unknowns=np.zeros(1))
+    return ContactEquilibrium(1.0, np.zeros(1), 3, 0.0, (contact,), None, None)  # type: ignore[arg-type]
 
 
 def test_a_step_that_was_taken_back_is_forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -68,5 +69,17 @@ def test_a_step_that_was_taken_back_is_forgotten(monkeypatch: pytest.MonkeyPatch
     reached = iter((taken_back, taken_back, loose, tight))
     inner = SimpleNamespace(body=None, equilibrium=lambda *_: next(reached))
     problem = sufficient_contact.SufficientContact(inner, 1.0)
-    assert problem.equilibrium(start, (1.0,), np.zeros(1), None) is taken_back
-    assert problem.equilibrium(start, (1.0,), np.zeros(1), None) is tight
+    assert problem.equilibrium(start, (1.0,), np.zeros(1), None).contacts is taken_back.contacts
+    assert problem.equilibrium(start, (1.0,), np.zeros(1), None).contacts is tight.contacts
+
+
+def test_what_was_reached_from_another_state_is_no_part_of_the_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A run that goes back to an earlier state, even after others were accepted, knows the forces on the way to it alone."""
+    monkeypatch.setattr(sufficient_contact, "_tightened", lambda now, reached, error: now)
+    monkeypatch.setattr(sufficient_contact, "MOST_TIGHTENINGS", 1)
+    start, hard, beyond, loose, tight = map(pressing, (1.0, 100.0, 100.0, 2.0, 2.0))
+    reached = iter((hard, hard, beyond, beyond, loose, tight))
+    problem = sufficient_contact.SufficientContact(SimpleNamespace(body=None, equilibrium=lambda *_: next(reached)), 1.0)
+    accepted = problem.equilibrium(start, (1.0,), np.zeros(1), None)
+    problem.equilibrium(accepted, (1.0,), np.zeros(1), None)
+    assert problem.equilibrium(start, (1.0,), np.zeros(1), None).contacts is tight.contacts
