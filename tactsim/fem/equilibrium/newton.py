@@ -115,9 +115,7 @@ class Problem:
 class _Solution:
     """The iterations of one solution, until the relative residual is below ``goal``."""
 
-    def __init__(
-        self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float, factored: Factored | None = None
-    ):
+    def __init__(self, balance: Balance, solver: LinearSolver, options: NewtonOptions, goal: float, factored: Factored | None):
         self._balance, self._solver, self._options, self._goal = balance, solver, options, goal
         self._body, self._forces = balance.body, balance.forces
         self._iterates: list[Any] = [interface.start() for interface in self._forces.interfaces]

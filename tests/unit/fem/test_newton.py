@@ -237,7 +237,7 @@ def test_a_linear_part_that_is_inside_out_lets_no_other_part_turn_so():
     before = body.kinematics(guess)
     assert before.J.min() < -0.9
     balance = Problem(body, np.zeros(0, int)).balance(ExternalForces())
-    solution = newton._Solution(balance, direct_solver(), NewtonOptions(), 1e-10)
+    solution = newton._Solution(balance, direct_solver(), NewtonOptions(), 1e-10, None)
     damping, after = solution._damped(balance.at(guess, before, 0.0), NewtonStep(step, 0.0))
     assert damping == 0.5
     assert body.oriented_volume_ratio(after).min() > 0.2
