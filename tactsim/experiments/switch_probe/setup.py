@@ -80,7 +80,7 @@ class SwitchProbeSetup(FrozenModel):
     contact: Coulomb = Coulomb()
     """Friction."""
     mesh: MeshSettings = MeshSettings()
-    """Size of the elements."""
+    """Size of the elements; at sharp corners the finest is a twelfth of the face by default, as smaller ones collapse there."""
     time: TimeSettings = TimeSettings(tolerance=0.02, per_decade=0)
     """Steps of time of the finite elements."""
     array: SwitchArray = SwitchArray()
