@@ -168,3 +168,8 @@ def _check(test: CreepTest) -> None:
         )
     if np.max(test.strain) <= 0:
         raise InvalidQuantity(f"the creep at {test.force:g} N never strains; compressive strain is positive")
+    if np.max(test.strain) >= 1:
+        raise InvalidQuantity(
+            f"the creep at {test.force:g} N strains by up to {np.max(test.strain):.3g}; allowed: below 1, at which nothing is "
+            "left of the film: is it in percent? Then head its column with [%]"
+        )

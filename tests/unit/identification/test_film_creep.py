@@ -91,6 +91,7 @@ def test_a_file_is_read_in_its_units(tmp_path):
     [
         (lambda t, force, s: (t, force * (1 + 1e-4 * t), s), r"stands in 1 rows.*write the force that was set"),
         (lambda t, force, s: (t, force, -s), "at 2 N never strains"),
+        (lambda t, force, s: (t, force, 100 * s), r"at 2 N strains by up to 1\..*below 1.*in percent"),
         (lambda t, force, s: (t, 0 * force, s), "under a force of 0 N"),
         (lambda t, force, s: (t % 10, force, s), "must increase from 0 s or later: one test for each force"),
     ],
