@@ -126,6 +126,8 @@ def sample_case(store: str | Path, sample: int) -> Case:
 def dataset_of(store: Store) -> xarray.Dataset:
     """The store by xarray, without Dask; jaws, rows, columns and axes have labels, in a store of an earlier tactsim too.
 
+    Variables stand in the order in which they were declared; Zarr finds them in that of the folder, another in every copy.
+
     Raises
     ------
     StorageError
@@ -134,7 +136,7 @@ def dataset_of(store: Store) -> xarray.Dataset:
     import xarray
 
     from tactsim.dataset.store.labels import labels_along
-    from tactsim.dataset.store.opening import reading
+    from tactsim.dataset.store.opening import ARRAYS, reading
 
     lengths = {name: array.shape[0] for name, array in store.described.items()}
     if len(set(lengths.values())) > 1:
@@ -142,6 +144,8 @@ def dataset_of(store: Store) -> xarray.Dataset:
         raise StorageError(f"{store.path} cannot be opened: {reason}: a run was killed while it made room; go on with --resume")
     with reading(store.path):
         whole = xarray.open_zarr(store.group.store, chunks=None, consolidated=False)
+    declared = dict.fromkeys([*store.attributes.get(ARRAYS, ()), *store.described])
+    whole = whole[[name for name in declared if name in whole.data_vars]]
     return whole.assign_coords(labels_along({str(name): size for name, size in whole.sizes.items()}))
 
 

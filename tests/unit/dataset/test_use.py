@@ -40,6 +40,12 @@ from tactsim.storage.building import MARK
 from tactsim.storage.own_files import OwnFiles
 
 
+def test_variables_stand_in_the_order_in_which_they_were_declared(kept: Path) -> None:
+    """A folder lists them in another order on every disk, so that card and export of equal data sets differed."""
+    declared = Store.open(kept).attributes["arrays"]
+    assert list(load(kept).data_vars) == declared
+
+
 def test_splits_are_apart_and_together_all(kept: Path) -> None:
     parts = {name: load(kept, split=name) for name in ("train", "validation", "test", "softer")}
     specimens = [set(part["specimen"].values.tolist()) for part in parts.values()]
