@@ -173,10 +173,10 @@ class TaylorHood:
             weights = weights * 2 * np.pi * radius
         return VolumePoints(*map(np.ascontiguousarray, (gradients, hoop, weights, values, pressure_values)))
 
-    def surface_points(self, facets: Array) -> SurfacePoints:
+    def surface_points(self, facets: Array, order: int | None = None) -> SurfacePoints:
         """Tabulate on boundary facets, (F, 3) edges or (F, 6) triangles by node numbers, corners first, outward oriented."""
         element = FACET_ELEMENTS[self.dim]
-        X, W = get_quadrature(element, SURFACE_ORDER[self.dim])
+        X, W = get_quadrature(element, order or SURFACE_ORDER[self.dim])
         values, local = tabulate(element, X)
         coordinates = self.nodes[facets]
         tangents = np.einsum("fai,qaj->fqij", coordinates, local)
