@@ -28,6 +28,7 @@ from tactsim.interfaces.readings import noise_in_words
 from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.localization.estimators.model_based import ModelBasedEstimator
 from tactsim.localization.estimators.thesis import ThesisEstimator
+from tactsim.localization.lump_response import LumpResponse
 from tactsim.localization.networks import LearnedWeights, Network, read_weights
 from tactsim.localization.region import GaussianRegion
 
@@ -126,25 +127,19 @@ def test_whoever_watches_sees_how_many_estimates_are_done(
     assert "12/12" in shown  # at three noises
 
 
+def ranking_of_made_store(folder: Path, table: LumpResponse) -> list[str]:
+    """The command that ranks the estimators on a store made in the folder, with a plain grasp as the reference."""
+    store, plain = made_store(folder, table, training=39), plain_result(folder / "plain")
+    given = ["--reference", plain, "--noise", "0.3 mN", "--split", "test", "--out", str(folder / "out")]
+    return ["data", "rank", str(store), *given]
+
+
 def test_the_command_writes_report_and_figures(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     table = response()
     monkeypatch.setattr("tactsim.experiments.localization.response_store.stored_response", lambda folder: table)
-    store, plain = made_store(tmp_path, table, training=39), plain_result(tmp_path / "plain")
-    order = [
-        "data",
-        "rank",
-        str(store),
-        "--reference",
-        plain,
-        "--noise",
-        "0.3 mN",
-        "--split",
-        "test",
-        "--out",
-        str(tmp_path / "out"),
-    ]
+    order = ranking_of_made_store(tmp_path, table)
     assert main(order) == 0
     shown = capsys.readouterr().out
     assert any(line.startswith("model_based ") for line in shown.splitlines())
@@ -173,20 +168,7 @@ def test_an_estimator_that_fails_costs_no_other_its_place(
     monkeypatch.setattr("tactsim.experiments.localization.response_store.stored_response", lambda folder: table)
     monkeypatch.setattr(HypothesesEstimator, "estimate", refusing)
     monkeypatch.setattr(ModelBasedEstimator, "estimate", broken)
-    store, plain = made_store(tmp_path, table, training=39), plain_result(tmp_path / "plain")
-    order = [
-        "data",
-        "rank",
-        str(store),
-        "--reference",
-        plain,
-        "--noise",
-        "0.3 mN",
-        "--split",
-        "test",
-        "--out",
-        str(tmp_path / "out"),
-    ]
+    order = ranking_of_made_store(tmp_path, table)
     assert main(order) == 1, "that of the first that failed"
     shown, noted = capsys.readouterr()
     assert any(line.startswith("thesis ") for line in shown.splitlines())
