@@ -147,8 +147,9 @@ class ForceCalibration(Experiment):
             return []
         step, kept = (format_quantity(float(f"{value:.3g}"), "V") for value in (self.chain.converter.step, lag))
         cutoff, hold = format_quantity(low_pass.cutoff, "Hz"), format_quantity(data.hold, "s")
-        longer, factor = data.settled_hold(self.chain), data.settled_hold(self.chain) / data.hold
-        advice = f"{_rounded_up(longer):g} s or raise chain.low_pass.cutoff to {_rounded_up(factor * low_pass.cutoff):g} Hz"
+        longer = data.settled_hold(self.chain)
+        higher = longer / data.hold * low_pass.cutoff
+        advice = f"{_rounded_up(longer):g} s or raise chain.low_pass.cutoff to {_rounded_up(higher):g} Hz"
         return [
             f"the low pass of {cutoff} is up to {kept} behind at the end of a hold of {hold}, where a step of the converter is "
             f"{step}: slope and intercept are those of readings that have not settled; lengthen data.hold to {advice}"

@@ -135,13 +135,14 @@ def with_lump(
     core = grid(across)
     shell, quads = skin(core, logical)
     sides = on_box(np.stack(np.unravel_index(shell, np.add(across, 1))))
-    inside, unit = blown(logical), directions(logical[shell])
+    unit = directions(logical[shell])
     wall, box = ball.center + turned(unit) @ ball.stretch, cells.corners[sides]
     ends = filling.ends(wall, box)
     between = [wall + share * (box - wall) for share in ends]
-    innermost = shell
     if filling.fans:
         inside, core, innermost = np.zeros((1, 3)), core[:0], np.zeros_like(shell)
+    else:
+        inside, innermost = blown(logical), shell
     added, rounded, depth = stacked(ball.center + turned(inside) @ ball.stretch, innermost, quads, core, [wall, *between, box])
     count, fresh = len(cells.corners), len(added) - len(shell)
     places = np.vstack([CORE_PLACE * np.abs(inside), *layer_places(unit, ends)])
