@@ -18,7 +18,6 @@ from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
 from tactsim.errors import ConvergenceError
-from tactsim.experiments.grasp.path import FIRST_PART
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.contact import contact_equilibrium, guarantee
@@ -26,6 +25,7 @@ from tactsim.mechanics.contact.contact_solution import Action
 from tactsim.mechanics.contact.contact_steps import accepted
 from tactsim.mechanics.contact.guarantee import check_accepted
 from tactsim.mechanics.models.block_model import GraspModel
+from tactsim.mechanics.models.first_guess import FIRST_PART
 from tactsim.mesh.structured_block import structured_block
 
 pytestmark = pytest.mark.usefixtures("one_thread")

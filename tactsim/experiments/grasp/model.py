@@ -52,4 +52,5 @@ def grasp_model(experiment: GraspSetup, sourced: SourcedBlock) -> GraspModel:
         sourced.block.facets,
         jaws=[experiment.jaw(side) for side in JAWS],
         offsets=np.array([jaw.middle(experiment.block.size) for jaw in (experiment.upper, experiment.lower)]),
+        balance=experiment.solver.balance,
     )

@@ -15,6 +15,7 @@ from tactsim.contact.jaw import Jaw
 from tactsim.contact.tilt import Tilt
 from tactsim.errors import InvalidQuantity, Refused
 from tactsim.experiments.grasp.lumen_pressure import AnyLumenPressure, PulsePressure
+from tactsim.experiments.grasp.solver_settings import GraspSolverSettings
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
 from tactsim.experiments.grasp.wedge import sliding_out
 from tactsim.interfaces import Inclusion, Material
@@ -130,6 +131,8 @@ class GraspSetup(FrozenModel):
     """Where the mesh comes from."""
     time: GraspTimeSettings = GraspTimeSettings()
     """Steps of time."""
+    solver: GraspSolverSettings = GraspSolverSettings()
+    """How the equilibrium is found."""
     readout: MatrixReadout | None = None
     """Sensors and electronics of the taxels, from force to voltage and back; null ends at the force."""
 

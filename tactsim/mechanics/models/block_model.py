@@ -33,7 +33,7 @@ from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.contact.surface_forces import TaxelForces, taxel_forces
 from tactsim.mechanics.contact.traction_recovery import recovered_forces
 from tactsim.mechanics.fields.solid_fields import solid_frame
-from tactsim.mechanics.models.first_guess import compressed
+from tactsim.mechanics.models.first_guess import compressed, with_lumps
 from tactsim.mesh.quadratic import QuadraticMesh
 from tactsim.results.result import FieldFrame
 
@@ -54,6 +54,7 @@ class GraspModel:
         given, in its half of the block: free faces bulge out beside the jaws and roll onto them
     jaws : the upper and the lower jaw
     offsets : (2, 2) places of the middles of their faces in x and y, in m
+    balance : residual at which Newton ends
     """
 
     def __init__(
@@ -64,6 +65,7 @@ class GraspModel:
         *,
         jaws: Sequence[Jaw],
         offsets: Array,
+        balance: float = NewtonOptions.tolerance,
     ):
         self.mesh, self.jaws, self.facets = mesh, dict(zip(JAWS, jaws, strict=True)), facets
         self.space = TaylorHood(mesh.nodes, mesh.elements, "solid", mesh.regions)
@@ -75,7 +77,7 @@ class GraspModel:
         self.surfaces = {side: SurfaceAssembly(points[side], self.body.pattern, 3) for side in JAWS}
         self.references = {side: points[side].interpolate(mesh.nodes) for side in JAWS}
         self.offsets = {side: np.asarray(offset, float) for side, offset in zip(JAWS, offsets, strict=True)}
-        self.problem = self._posed(NewtonOptions(start_patience=START_PATIENCE))
+        self.problem = self._posed(NewtonOptions(tolerance=balance, start_patience=START_PATIENCE))
         self.springs = RegularisingSprings(self.body)
 
     def _posed(self, options: NewtonOptions) -> Problem:
@@ -140,8 +142,15 @@ class GraspModel:
 
     def compressed(self, closing: float) -> Array:
         """Unknowns (size,) that Newton starts from in the undeformed block, each jaw's face closed by ``closing`` in m."""
+        return self._moved(compressed(self.mesh, self.body.shear_moduli, closing))
+
+    def begun_as(self, displacement: Array) -> Array:
+        """Unknowns (size,) that Newton starts from where tissue without lumps has a ``displacement`` (n, 3) in m of the nodes."""
+        return self._moved(with_lumps(self.mesh, self.body.shear_moduli, displacement))
+
+    def _moved(self, displacement: Array) -> Array:
         unknowns = np.zeros(self.space.size)
-        self.space.split(unknowns)[0][:] = compressed(self.mesh, self.body.shear_moduli, closing)
+        self.space.split(unknowns)[0][:] = displacement
         return unknowns
 
     def _friction_mask(self, side: str) -> Array:

@@ -9,6 +9,7 @@ from tactsim.array import Array
 from tactsim.fem.assembly.body import Body, RelaxationStep
 from tactsim.fem.assembly.pressure import FollowerPressure
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
+from tactsim.mechanics.models.first_guess import FirstGuess
 
 if TYPE_CHECKING:
     from tactsim.mechanics.models.block_model import GraspModel
@@ -24,8 +25,8 @@ class PressedBody:
     by_force : whether the first value is a force
     first_displacement : guess in m of a displacement under a force with which something touches
     walls : what the pressures act on
-    first_guess : unknowns that Newton starts from in the undeformed body, by the displacement in m; by default
-        those of no deformation
+    first_guess : where Newton starts from the undeformed body, which it is given, by the displacement in m; by default without
+        a deformation
     """
 
     def __init__(
@@ -35,7 +36,7 @@ class PressedBody:
         by_force: bool,
         first_displacement: float,
         walls: Sequence[FollowerPressure] = (),
-        first_guess: Callable[[float], Array] | None = None,
+        first_guess: Callable[[ContactEquilibrium, float], FirstGuess] | None = None,
     ):
         self._model, self._by_force, self._first_displacement = model, by_force, first_displacement
         self._walls, self._first_guess = walls, first_guess
@@ -59,10 +60,10 @@ class PressedBody:
         """
         model, pressures = self._model, [wall.at(p) for wall, p in zip(self._walls, loads[1:], strict=True)]
         if not self._by_force:
-            unknowns = guess[:-1]
+            begin = FirstGuess(now, guess[:-1])
             if self._first_guess is not None and loads[0] > now.load and not now.unknowns.any():
-                unknowns = self._first_guess(loads[0])
-            return model.equilibrium(now, loads[0], unknowns, relaxation=relaxation, loads=pressures)
+                begin = self._first_guess(now, loads[0])
+            return model.equilibrium(begin.state, loads[0], begin.unknowns, relaxation=relaxation, loads=pressures)
         if loads[0] == 0:
             return model.equilibrium(now, now.load, guess[:-1], relaxation=relaxation, loads=pressures)
         rigid_displacement = guess[-1] if guess[-1] > 0 else self._first_displacement

@@ -118,7 +118,7 @@ class ContactRecord(ABC, Generic[Model]):
 
     def findings(self) -> Findings:
         """What everything that was accepted says; no success if a reported state is none."""
-        status, reason = judged(*self.verdict(), self._reported, self.tolerance)
+        status, reason = judged(*self.verdict(), self._reported, self.tolerance, self.model.problem.options.tolerance)
         return Findings(
             reason,
             self.steps,

@@ -12,8 +12,6 @@ from tactsim.units import format_quantity
 LARGEST_FORCE_ERROR = 5e-3
 """Largest part of the force that penetration may take away: a quarter of the two per cent that the meshes of the shipped cases
 leave, so that the regularisation of the contact is never what limits an answer."""
-LARGEST_RESIDUAL = NewtonOptions().tolerance
-"""Largest relative residual of an equilibrium."""
 ROUND_OFF = 1e-9
 """Relative excess of a penetration over its tolerance that is round-off."""
 FINITE = ("displacement", "reaction_force", "max_penetration", "min_volume_ratio", "penetration_force_error")
@@ -22,27 +20,30 @@ SATURATED = 0.99
 """Estimate beyond which nearly all of the force is missing and nothing more follows from it."""
 
 
-def judged(status: Status, reason: str, reported: Iterable[StepRecord], tolerance: float) -> tuple[Status, str]:
+def judged(
+    status: Status, reason: str, reported: Iterable[StepRecord], tolerance: float, balance: float = NewtonOptions.tolerance
+) -> tuple[Status, str]:
     """Status and reason of a run whose path ended as given, from the states that it reports.
 
-    ``tolerance`` in m is the largest penetration that was allowed. A run that failed or was interrupted stays so.
+    ``tolerance`` in m is the largest penetration that was allowed, ``balance`` the largest relative residual. A run
+    that failed or was interrupted stays so.
     """
     if status is not Status.CONVERGED:
         return status, reason
     for step in reported:
-        if fault := _fault(step, tolerance):
+        if fault := _fault(step, tolerance, balance):
             return Status.FAILED, f"{fault}, {_where(step.values)}"
     return status, reason
 
 
-def _fault(step: StepRecord, tolerance: float) -> str | None:
+def _fault(step: StepRecord, tolerance: float, balance: float) -> str | None:
     """What is wrong with a reported state, None if nothing is."""
     values = step.values
     for name in FINITE:
         if name in values and not math.isfinite(values[name]):
             return f"the {name.replace('_', ' ')} is {values[name]}, not a finite number"
-    if not step.residual <= LARGEST_RESIDUAL:
-        return f"the residual is {step.residual:.1e}; allowed: {LARGEST_RESIDUAL:g}"
+    if not step.residual <= balance:
+        return f"the residual is {step.residual:.1e}; allowed: {balance:g}"
     if values["min_volume_ratio"] <= 0:
         return f"an element is inside out, its volume ratio {values['min_volume_ratio']:.3g}; allowed: above 0"
     if values["max_penetration"] > tolerance * (1 + ROUND_OFF):

@@ -13,13 +13,13 @@ from numpy.testing import assert_allclose
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.jaw import Jaw
 from tactsim.contact.penalty import Augmentation
-from tactsim.experiments.grasp.path import FIRST_PART
 from tactsim.fem.assembly.body import RelaxationStep
 from tactsim.fem.equilibrium.mirrored_problem import MirroredProblem, free_problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.neo_hookean import NeoHookean
 from tactsim.mechanics.models.block_model import START_PATIENCE, GraspModel
+from tactsim.mechanics.models.first_guess import FIRST_PART
 from tactsim.mesh.block import BlockMeshSettings
 from tactsim.mesh.graded.block import graded_block
 

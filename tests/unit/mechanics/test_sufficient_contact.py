@@ -7,7 +7,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from tactsim.experiments.grasp import path, setup
+from tactsim.experiments.grasp import path, regularisation, setup
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.outcome import sufficient_contact
@@ -20,7 +20,7 @@ def coarse_default(monkeypatch: pytest.MonkeyPatch) -> None:
     """A default tolerance with which the example misses more of its force than a success may."""
     monkeypatch.setattr(setup, "PENETRATION", 5e-3)
     monkeypatch.setattr(setup, "PENETRATION_OF_CLOSING", 0.1)
-    monkeypatch.setattr(path, "SOFTNESS_OF_HEIGHT", 0.05)  # or the contact would be stiffer than its tolerance asks
+    monkeypatch.setattr(regularisation, "SOFTNESS_OF_HEIGHT", 0.05)  # or the contact would be stiffer than its tolerance asks
 
 
 def force(result: Result) -> float:

@@ -9,7 +9,7 @@ import pytest
 
 from tactsim.experiments.grasp.drawn_edges import CELL_SHARE, SOFTNESS_SHARE, drawn_radius, following
 from tactsim.experiments.grasp.grasp import Grasp
-from tactsim.experiments.grasp.path import regularisation
+from tactsim.experiments.grasp.regularisation import regularisation
 from tactsim.mesh.graded.beside_jaws import THINNER, footprint_of
 
 SMALLER = {"width": "30 mm", "depth": "30 mm", "fillet": "1 mm"}

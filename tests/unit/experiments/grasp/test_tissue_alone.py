@@ -1,0 +1,172 @@
+"""Where Newton begins a grasp whose case asks for the tissue without its inclusions.
+
+Mutants: displacements without the forces of the contact, or half of these, which save no systems; a kept solution that knows only
+the block; friction beyond the limit of the grasp's own law.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+import tactsim as ts
+from tactsim.errors import CaseError, ConvergenceError
+from tactsim.experiments.grasp import path, tissue_alone
+from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
+from tactsim.experiments.grasp.regularisation import regularisation
+from tactsim.fem.equilibrium import newton
+from tactsim.mechanics.models.block_model import GraspModel
+from tactsim.results.result import Status
+
+pytestmark = pytest.mark.usefixtures("one_thread")
+CELLS = {"kind": "graded", "size": 10e-3, "inclusion_size": 4e-3, "edge_size": 3.2e-3, "growth": 1, "filling": "fan"}
+CENTER, RADIUS, CLOSING = (0.014, 0.023, 0.011), 4e-3, 1e-3
+
+
+def grasp(lump: Any = "lump", *, guess: str = "tissue", **changes: Any) -> ts.Grasp:
+    """A lump in a block, closed on by 1 mm in one step."""
+    settings: dict[str, Any] = {
+        "block": ts.Block(tissue="icf_stable"),
+        "inclusions": [ts.Embedded(shape=ts.Sphere(center=CENTER, radius=RADIUS), material=lump)],
+        "matrix": ts.TaxelLayout(rows=3, columns=3, pitch=10e-3, size=9e-3),
+        "loading": ts.close(to=CLOSING, duration=1.0),
+        "mesh": CELLS,
+        "time": {"steps": 1},
+        "penetration_tolerance": 1e-5,
+        "solver": {"first_guess": guess, "balance": 1e-4},
+    }
+    return ts.Grasp(**(settings | changes))
+
+
+@pytest.fixture(autouse=True)
+def nothing_kept() -> Iterator[None]:
+    tissue_alone._solved.cache_clear()
+    yield
+    tissue_alone._solved.cache_clear()
+
+
+@pytest.fixture
+def systems(monkeypatch: pytest.MonkeyPatch) -> list[int]:
+    """Sizes of the linear systems that are solved."""
+    solved: list[int] = []
+    take = newton._Solution._linear_step
+
+    def counted(self: Any, state: Any, now: Any) -> Any:
+        solved.append(len(state.unknowns))
+        return take(self, state, now)
+
+    monkeypatch.setattr(newton._Solution, "_linear_step", counted)
+    return solved
+
+
+def taxels(result: ts.Result) -> np.ndarray:
+    assert result.status is Status.CONVERGED, result.reason
+    return np.concatenate([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+
+
+def of_the_lump(systems: list[int]) -> int:
+    """How many of the systems are those of the block with the lump, the largest."""
+    return sum(size == max(systems) for size in systems)
+
+
+@pytest.mark.parametrize("forces", [1.0, 0.5, 0.0], ids=["whole", "half the forces", "displacements only"])
+def test_newton_is_led_by_displacements_and_forces_together(
+    forces: float, systems: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    plain = grasp(guess="compression").run()
+    without = of_the_lump(systems)
+    systems.clear()
+    expecting = tissue_alone.TissueAlone.expected_by
+
+    def weaker(self: Any, rest: Any, closing: float) -> Any:
+        state = expecting(self, rest, closing)
+        grown = [
+            replace(c.growth, pressure=forces * c.growth.pressure, tangential=forces * c.growth.tangential)
+            for c in state.contacts
+        ]
+        return replace(state, contacts=tuple(replace(c, growth=g) for c, g in zip(state.contacts, grown, strict=True)))
+
+    monkeypatch.setattr(tissue_alone.TissueAlone, "expected_by", weaker)
+    led = grasp().run()
+    assert np.abs(taxels(led) - taxels(plain)).max() < 2e-3 * taxels(plain).max(), "within what the contact's tolerance leaves"
+    assert (of_the_lump(systems) <= 0.7 * without) == (forces == 1.0)
+
+
+def test_tissue_of_one_kind_is_where_the_guess_says() -> None:
+    """With a "lump" of the tissue's own material: what is expected differs by the mesh, the rungs and the surplus of friction."""
+    experiment = grasp("icf_stable")
+    model = grasp_model(experiment, grasp_mesh(experiment))
+    rest = model.start(experiment.contact, regularisation(experiment))
+    guess = path._first_guess(experiment, model, rest, CLOSING)
+    found = model.equilibrium(rest, CLOSING, model.compressed(0.6 * CLOSING))
+    compressed = model.compressed(CLOSING)
+    near, far = (np.sqrt(np.mean(model.space.split(u - found.unknowns)[0] ** 2)) for u in (guess.unknowns, compressed))
+    assert near < min(0.02 * CLOSING, 0.2 * far)
+    for expected, contact in zip(guess.state.contacts, found.contacts, strict=True):
+        assert expected.growth is not None
+        pressure = CLOSING * expected.growth.pressure
+        whole, sought = (expected.surface.points.weights @ values for values in (pressure, contact.state.pressure))
+        assert whole == pytest.approx(sought, rel=0.05)
+        friction = CLOSING * np.linalg.norm(expected.growth.tangential, axis=0)
+        assert (friction <= contact.pair.traction_limit(pressure) * (1 + 1e-9)).all()
+
+
+def test_no_grasp_depends_on_those_before_it() -> None:
+    first = taxels(grasp().run())
+    grasp(loading=ts.close(to=1.05e-3, duration=1.0)).run()
+    assert np.array_equal(taxels(grasp().run()), first)
+    tissue_alone._solved.cache_clear()
+    assert np.array_equal(taxels(grasp().run()), first)
+
+
+def test_it_is_solved_once_for_all_that_differ_little_but_in_their_inclusions() -> None:
+    def found(**changes: Any) -> Any:
+        return tissue_alone.tissue_alone(grasp(**changes), changes.pop("to", CLOSING))
+
+    one = found()
+    elsewhere = ts.Embedded(shape=ts.Sphere(center=(0.02, 0.01, 0.008), radius=3e-3), material="lump")
+    assert found(inclusions=[elsewhere]) is one
+    assert found(contact=ts.Coulomb(friction=0.62)) is one
+    assert found(matrix=ts.TaxelLayout(rows=4, columns=4, pitch=8e-3, size=7e-3)) is one
+    assert found(block=ts.Block(tissue="lump")) is not one
+    assert found(contact=ts.Coulomb(friction=0.3)) is not one
+    assert found(upper={"tilt_x": "1 deg"}) is not one
+    assert found(penetration_tolerance=5e-6) is not one
+
+
+def test_where_it_is_no_help_there_is_none() -> None:
+    relaxing = ts.Block(tissue={"kind": "neo_hookean", "c10": "2 kPa", "relaxation": {"fractions": [0.3], "times": ["1 s"]}})
+    assert tissue_alone.tissue_alone(grasp(), CLOSING) is not None
+    assert tissue_alone.tissue_alone(grasp(guess="compression"), CLOSING) is None
+    assert tissue_alone.tissue_alone(grasp(inclusions=[]), CLOSING) is None
+    assert tissue_alone.tissue_alone(grasp(mesh={"kind": "structured", "cells": [8, 8, 4]}), CLOSING) is None
+    assert tissue_alone.tissue_alone(grasp(block=relaxing), CLOSING) is None
+
+
+def test_tissue_that_newton_does_not_find_is_done_without(monkeypatch: pytest.MonkeyPatch) -> None:
+    solve = GraspModel.equilibrium
+
+    def lost(self: GraspModel, *arguments: Any, **settings: Any) -> Any:
+        if self.mesh.regions.max() == 0:
+            raise ConvergenceError("lost", [])
+        return solve(self, *arguments, **settings)
+
+    compressed = taxels(grasp(guess="compression").run())
+    monkeypatch.setattr(GraspModel, "equilibrium", lost)
+    assert np.array_equal(taxels(grasp().run()), compressed)
+
+
+def test_forces_are_balanced_as_exactly_as_the_case_asks() -> None:
+    exact = grasp(solver={"first_guess": "tissue"}).run()
+    coarse = grasp().run()
+    assert exact.steps[-1].residual <= 1e-10 < coarse.steps[-1].residual <= 1e-4
+    assert np.abs(taxels(coarse) - taxels(exact)).max() < 1e-5 * taxels(exact).max()
+
+
+def test_a_balance_that_says_nothing_is_refused() -> None:
+    with pytest.raises(CaseError, match=r"solver\.balance"):
+        grasp(solver={"balance": 0.5})
