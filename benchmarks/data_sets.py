@@ -22,6 +22,7 @@ from tactsim.dataset.sampling.drawing import drawn_specimen
 from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.errors import ConvergenceError
 from tactsim.experiments.grasp.grasp import Grasp
+from tactsim.experiments.grasp.solver_settings import GraspSolverSettings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.results.result import Status
 
@@ -123,7 +124,8 @@ def _taxels(number: int, fine: bool) -> np.ndarray:
     if fine:
         mesh = FINE | {"inclusion_size": FINE_SHARE * grasp.inclusions[0].shape.radius}
         time = grasp.time.model_copy(update={"steps": FINE_STEPS})
-        grasp = grasp.model_copy(update={"mesh": grasp.mesh.model_copy(update=mesh), "time": time})
+        settings = {"mesh": grasp.mesh.model_copy(update=mesh), "time": time, "solver": GraspSolverSettings()}
+        grasp = grasp.model_copy(update=settings)
     result = grasp.run()
     if result.status is not Status.CONVERGED:
         return np.array(np.nan)

@@ -43,9 +43,15 @@ class TaxelLayout(FrozenModel):
     @model_validator(mode="after")
     def _apart(self) -> Self:
         if self.size > self.pitch * (1 + 1e-12):
-            size, pitch = format_quantity(self.size, "m"), format_quantity(self.pitch, "m")
-            raise ValueError(f"taxels of {size} overlap at a pitch of {pitch}; size must be at most the pitch")
+            raise ValueError(
+                f"taxels of {self.given('size')} overlap at a pitch of {self.given('pitch')}; size must be at most the pitch"
+            )
         return self
+
+    def given(self, name: str) -> str:
+        """A length in words, and whether it is the default."""
+        length = format_quantity(getattr(self, name), "m")
+        return length if name in self.model_fields_set else f"{length} (the default)"
 
     @property
     def in_words(self) -> str:

@@ -240,7 +240,8 @@ class GraspSetup(FrozenModel):
                 needed = self.matrix.extent()[axis]
                 if needed > extent * (1 + 1e-12):
                     wide, has = format_quantity(needed, "m"), format_quantity(extent, "m")
-                    raise ValueError(f"matrix: {wide} wide, more than {side}.{name} {has}; take a smaller pitch or a larger jaw")
+                    at = f"{wide} wide at a pitch of {self.matrix.given('pitch')}"
+                    raise ValueError(f"matrix: {at}, more than {side}.{name} {has}; take a smaller pitch or a larger jaw")
         return self
 
     @model_validator(mode="after")

@@ -16,7 +16,7 @@ from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, Regul
 from tactsim.array import Array
 from tactsim.contact.coulomb import Coulomb
 from tactsim.contact.traction import ContactIterate
-from tactsim.errors import ConvergenceError
+from tactsim.errors import Collapsed, ConvergenceError
 from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.regularisation import regularisation
 from tactsim.experiments.grasp.setup import GraspSetup
@@ -147,7 +147,7 @@ def _solved(alone: _Alone) -> TissueAlone | None:
     rest = model.start(setup.contact, regularisation(setup))
     try:
         state = model.equilibrium(rest, closing, model.compressed(FIRST_PART * closing))
-    except ConvergenceError:
+    except (ConvergenceError, Collapsed):
         return None
     displacement = model.space.split(state.unknowns)[0] / closing
     forces = {side: _face_forces(model, side, contact, closing) for side, contact in zip(JAWS, state.contacts, strict=True)}

@@ -314,7 +314,12 @@ def test_small_closings_press_in_proportion():
         ({"loading": pressed({"kind": "jump", "to": 0.0, "duration": 1.0}, control="force")}, "must press all the time"),
         ({"upper": {"width": 30e-3, "offset": (0.0, 60e-3)}}, None),
         ({"upper": {"width": 30e-3, "depth": 30e-3, "offset": (0.0, 34e-3)}}, "upper.offset: at 34 mm the jaw passes beside"),
-        ({"lower": {"depth": 20e-3}}, "matrix: 29 mm wide, more than lower.depth 20 mm"),
+        (
+            {"lower": {"depth": 20e-3}},
+            r"matrix: 29 mm wide at a pitch of 10 mm \(the default\), more than lower.depth 20 mm",
+        ),
+        ({"matrix": {"columns": 6, "pitch": 9e-3}}, "matrix: 54 mm wide at a pitch of 9 mm, more than upper.width 50 mm"),
+        ({"matrix": {"pitch": 5e-3}}, r"taxels of 9 mm \(the default\) overlap at a pitch of 5 mm; size must"),
         ({"inclusions": [{"shape": BALL, "material": "lumps"}]}, "did you mean 'lump'"),
         ({"inclusions": [{"shape": TUBE, "material": "lump", "lumen": PULSE | {"systole": 0.0}}]}, "greater than 0"),
         ({"inclusions": [{"shape": TUBE, "material": "lump", "lumen": PULSE | {"diastole": 1e5}}]}, "above diastole 100 kPa"),

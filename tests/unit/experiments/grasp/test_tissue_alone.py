@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import tactsim as ts
-from tactsim.errors import CaseError, ConvergenceError
+from tactsim.errors import CaseError, Collapsed, ConvergenceError, Unfinished
 from tactsim.experiments.grasp import path, tissue_alone
 from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.regularisation import regularisation
@@ -147,12 +147,15 @@ def test_where_it_is_no_help_there_is_none() -> None:
     assert tissue_alone.tissue_alone(grasp(block=relaxing), CLOSING) is None
 
 
-def test_tissue_that_newton_does_not_find_is_done_without(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize(
+    "error", [ConvergenceError("lost", []), Collapsed("an element is nearly inside out")], ids=["lost", "crushed"]
+)
+def test_tissue_that_newton_does_not_find_is_done_without(error: Unfinished, monkeypatch: pytest.MonkeyPatch) -> None:
     solve = GraspModel.equilibrium
 
     def lost(self: GraspModel, *arguments: Any, **settings: Any) -> Any:
         if self.mesh.regions.max() == 0:
-            raise ConvergenceError("lost", [])
+            raise error
         return solve(self, *arguments, **settings)
 
     compressed = taxels(grasp(guess="compression").run())
