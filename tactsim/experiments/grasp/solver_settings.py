@@ -20,5 +20,5 @@ class GraspSolverSettings(FrozenModel):
     once for all of a process that differ little but in their inclusions. In data sets on few cells it saves half of the linear
     systems; in a block that is its own mirror image, or on fine meshes, none."""
     balance: Annotated[float, Field(ge=1e-10, le=1e-2)] = 1e-10
-    """Largest unbalanced force at a node over the largest nodal force, where Newton ends: with 1e-4 taxels of `sweep_lumps` move
-    by 3e-7 of the largest."""
+    """Largest unbalanced force at a node over the largest nodal force, where Newton ends: with 1e-3 taxels of `sweep_lumps` move
+    by 6e-5 of the largest at most."""
