@@ -55,9 +55,10 @@ ONE_PLACE = {
 EXIT_CODES = """\
 exit codes:
   0    done
+  1    a defect of tactsim; please report it
   2    bad input: the case file, an option or a quantity
-  3    the computation did not converge; what was accepted is written
-  4    validation outside its tolerance
+  3    the computation did not converge, or a sample of a sweep failed; what was accepted is written
+  4    a validation row without its recorded outcome, or findings of data check
   5    a file or folder cannot be read or written
   130  interrupted; what was accepted is written
 """
