@@ -54,6 +54,9 @@ def read_provenance(path: Path) -> dict[str, Any]:
     content = read_json(opened(path, "result").text(), str(path))
     if not isinstance(content, dict):
         raise StorageError(f"{one_line(path)} is damaged: it is not a mapping")
+    case = content.get("case", {})
+    if not isinstance(case, dict) or not isinstance(case.get("experiment", {}), dict):
+        raise StorageError(f"{one_line(path)} is damaged: it holds no case")
     return content
 
 

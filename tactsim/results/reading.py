@@ -34,8 +34,7 @@ class StoredResult:
     @property
     def case_title(self) -> str:
         """Title of the case, empty without one."""
-        case = self.provenance.get("case")
-        return str(case.get("title") or "") if isinstance(case, dict) else ""
+        return str(self.provenance.get("case", {}).get("title") or "")
 
     @property
     def changes(self) -> tuple[str, ...]:

@@ -13,7 +13,7 @@ from time import monotonic
 
 from tactsim.case import load_case
 from tactsim.code_identity import code_identity
-from tactsim.errors import ConvergenceError, StorageError, TactsimError
+from tactsim.errors import ConvergenceError, OutOfMemory, StorageError, TactsimError
 from tactsim.outside.files import opened
 from tactsim.outside.processes import BROKEN, serve
 from tactsim.outside.text import counted
@@ -163,8 +163,9 @@ def simulated(task: Task) -> RunOutcome:
     try:
         result = case.experiment.run(None)
     except TactsimError as error:
+        status = "interrupted" if isinstance(error, StorageError | OutOfMemory) else "failed"  # by the machine, or by itself
         return RunOutcome(
-            id=task.name, case_id=case.case_id, status="failed", reason=str(error), quantities={}, history={}, seconds=0.0
+            id=task.name, case_id=case.case_id, status=status, reason=str(error), quantities={}, history={}, seconds=0.0
         )
     scalars = {key: quantity.value for key, quantity in result.quantities.items() if isinstance(quantity.value, int | float)}
     return RunOutcome(

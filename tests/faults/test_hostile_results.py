@@ -201,10 +201,12 @@ def test_a_result_of_millions_of_values_is_refused_before_it_is_read(tmp_path: P
 
 def test_provenance_is_checked_likewise(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = grasp_folder(tmp_path / "a")
-    for text in ("[" * 10_000, '{"case": 1e999}', "[]", '{"case": ' + "[" * 50 + "]" * 50 + "}"):
+    deep = '{"case": ' + "[" * 50 + "]" * 50 + "}"
+    for text in ("[" * 10_000, '{"case": 1e999}', "[]", deep, '{"case": null}', '{"case": [1]}', '{"case": {"experiment": 3}}'):
         (folder / "provenance.json").write_text(text, encoding="utf-8")
-        assert main(["show", str(folder)]) == 5
-        assert "provenance.json is damaged" in capsys.readouterr().err
+        for command in (["show", str(folder)], ["compare", str(folder), str(folder)]):
+            assert main(command) == 5
+            assert "provenance.json is damaged" in capsys.readouterr().err
     (folder / "provenance.json").write_text('{"case": {"title": "a\\u001b[31m\\nconverged"}}', encoding="utf-8")
     assert main(["show", str(folder)]) == 0
     assert capsys.readouterr().out.startswith("a\\x1b[31m\\nconverged\n")

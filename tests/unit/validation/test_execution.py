@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from tactsim.case import load_case
-from tactsim.errors import InputError
+from tactsim.errors import InputError, OutOfMemory, StorageError, TactsimError
 from tactsim.experiments.indentation.indentation import Indentation
 from tactsim.shipped import CASES
 from tactsim.validation.execution import StudyRunner, Task, simulated
@@ -92,6 +92,21 @@ def test_a_refusal_on_the_way_is_an_outcome(monkeypatch: pytest.MonkeyPatch) -> 
     monkeypatch.setattr(Indentation, "begin", refused)
     outcome = simulated(Task("refused", str(CASES / STUDY.case), ()))
     assert (outcome.status, outcome.reason) == ("failed", "no mesh")
+
+
+@pytest.mark.parametrize("error", [StorageError("no room left"), OutOfMemory("the memory does not suffice")])
+def test_what_the_machine_did_wrong_is_not_kept(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, error: TactsimError) -> None:
+    """A run without memory stayed failed in every later validation."""
+
+    def stopped(self: Indentation) -> None:
+        raise error
+
+    monkeypatch.setattr(Indentation, "begin", stopped)
+    outcome, runner = simulated(Task("stopped", str(CASES / STUDY.case), ())), StudyRunner(cache=tmp_path)
+    assert not outcome.converged
+    assert outcome.reason == str(error)
+    runner._store(outcome)
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_whole_number_that_a_study_sets_stays_one() -> None:
