@@ -94,7 +94,7 @@ def _rank(arguments: argparse.Namespace) -> int:
         estimators["learned"] = LearnedEstimator.checked(arguments.learned)
     seen = 0 if arguments.learned is None else seen_in_training(read_weights(arguments.learned), samples)
     failed: dict[str, Exception] = {}
-    response = stored_response(arguments.reference[-1])
+    response = stored_response(samples.plain.folder)
     ranked = ranking(estimators, samples, response, seed=arguments.seed, failed=failed.__setitem__)
     if not ranked:
         raise next(iter(failed.values()))
@@ -234,7 +234,8 @@ def _train(arguments: argparse.Namespace) -> int:
         given = "--out is missing" if arguments.out is None else f"--out {one_line(arguments.out)} is no place for weights"
         raise InputError(f"train: {given}; name a file ending in .npz")
     _refuse_file(arguments.out)
-    learned = trained(_samples(arguments, ["train"]), stored_response(arguments.reference[-1]), seed=arguments.seed)
+    samples = _samples(arguments, ["train"])
+    learned = trained(samples, stored_response(samples.plain.folder), seed=arguments.seed)
     replace_file(arguments.out, learned.content())
     console.out(f"{learned.summary()}; estimator in {arguments.out}")
     return 0

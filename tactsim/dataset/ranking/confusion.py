@@ -10,13 +10,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from tactsim.array import Array
-from tactsim.dataset.ranking.reference import check_same, warn_of_inclusions
-from tactsim.dataset.ranking.samples import refuse_reopened, stored_experiment
+from tactsim.dataset.ranking.reference import warn_of_inclusions
+from tactsim.dataset.ranking.samples import check_all_same, first_grasp, refuse_reopened
+from tactsim.dataset.sampling.stored import stored_sweep
+from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import load
 from tactsim.errors import InputError
 from tactsim.experiments.localization.confusion import ConfusionTable, class_of, estimated_class
 from tactsim.experiments.localization.response_store import stored_response
-from tactsim.experiments.localization.source import SAME_CLOSING, readings_of, stored_grasp
+from tactsim.experiments.localization.source import readings_of, same_closing, stored_grasp
 from tactsim.interfaces import Estimator
 from tactsim.interfaces.both_jaws import TAXEL_FORCE
 from tactsim.interfaces.readings import ROUNDING_NOISE, noise_in_words
@@ -58,8 +60,9 @@ def store_confusion(
     stored = stored_grasp(reference)
     warn_of_inclusions(stored)
     plain = readings_of(stored, noise=noise)
-    experiment = stored_experiment(store)
-    check_same(np.asarray(experiment.block.size), experiment.matrix, plain, "the store")
+    sweep = stored_sweep(Store.open(store))
+    experiment = first_grasp(sweep, Path(store).name)
+    check_all_same(sweep, data, experiment, plain, Path(store).name)
     refuse_reopened(experiment, Path(store).name)
     forces = np.asarray(data[TAXEL_FORCE].values, dtype=float)[:, -1]
     _check_closings(data["closing"].values, plain.closing)
@@ -98,8 +101,7 @@ def _check_closings(closings: Array, reference: float | None) -> None:
     """Refuse samples that close by more or less than the reference."""
     if reference is None or not np.isfinite(closings).all():
         raise InputError("the samples or the reference do not state their closing; needed: a prescribed displacement of the jaws")
-    away = float(np.abs(closings - reference).max())
-    if away > SAME_CLOSING * reference:
+    if not same_closing(closings, reference):
         raise InputError(
             f"the samples close by {closings.min():g} to {closings.max():g} m, the reference by {reference:g} m; needed: the same"
         )

@@ -30,12 +30,14 @@ class PlainGrasp:
     forces : (n, jaw, row, column) in N
     readings : of its last step, with layout, block and middle
     scene : the block between the jaws
+    folder : of the result that closes the furthest
     """
 
     closings: Array
     forces: Array
     readings: Readings
     scene: GraspScene
+    folder: str = ""
 
     @classmethod
     def of_results(cls, folders: Sequence[str]) -> PlainGrasp:
@@ -57,11 +59,11 @@ class PlainGrasp:
         readings = [readings_of(result, noise=0.0) for result in results]
         for result in results:
             warn_of_inclusions(result)
-        histories = [(over_time(result, "displacement"), jaws_over_time(result, TAXEL_FORCE)) for result in results]
+        histories, last = [(over_time(result, "displacement"), jaws_over_time(result, TAXEL_FORCE)) for result in results], 0
         if len(folders) > 1:
             histories = [(closings[-1:], forces[-1:]) for closings, forces in histories]
             order = np.argsort([closings[-1] for closings, _ in histories])
-            histories, readings = [histories[k] for k in order], [readings[k] for k in order]
+            histories, readings, last = [histories[k] for k in order], [readings[k] for k in order], int(order[-1])
         for other in readings[:-1]:
             check_same(other.block_size, other.layout, readings[-1], "one reference")
         closings, forces = (np.concatenate(parts) for parts in zip(*histories, strict=True))
@@ -72,7 +74,7 @@ class PlainGrasp:
                 "several steps (time: {steps: 12}), or several results"
             )
         begun = np.concatenate([[0.0], closings]), np.concatenate([np.zeros_like(forces[:1]), forces])
-        return cls(*begun, readings[-1], results[-1].scene_as(GraspScene))
+        return cls(*begun, readings[-1], results[last].scene_as(GraspScene), folders[last])
 
     def at(self, closing: Array | float) -> Array:
         """Forces (..., jaw, row, column) in N at closings in m, by monotone cubic interpolation.

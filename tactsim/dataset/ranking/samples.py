@@ -14,8 +14,8 @@ import numpy as np
 from tactsim.array import Array
 from tactsim.dataset.ranking.reference import PlainGrasp, check_same
 from tactsim.dataset.ranking.sensing import Sensing, noises
-from tactsim.dataset.sampling.drawing import drawn_specimen, stored_cases
-from tactsim.dataset.sampling.layout import TRIED_SPECIMENS
+from tactsim.dataset.sampling.drawing import stored_cases
+from tactsim.dataset.sampling.layout import first_case
 from tactsim.dataset.sampling.stored import UNUSABLE, stored_sweep
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.opening import Store
@@ -40,6 +40,8 @@ LEAST_NOISE = 1e-9
 """Of a reading over the largest: below it is round-off."""
 JAW_KEYS = (("upper",), ("lower",))
 """Where a case describes its jaws."""
+SHARED = (("block",), ("matrix",))
+"""Where it describes what all samples and the reference share."""
 SENSED = (("readout",), ("time",))
 """Parts of a grasp that say how it was read."""
 
@@ -146,12 +148,12 @@ def judged_samples(
         reference, closes further, or opens again before its end.
     """
     data, sweep = load(store, split=split, verified=True), stored_sweep(Store.open(store))
-    experiment = _first_grasp(sweep, Path(store).name)
+    experiment = first_grasp(sweep, Path(store).name)
     source = source or (READ_FORCE if experiment.readout else TAXEL_FORCE)
     _check_store(data, source, Path(store).name, split)
     refuse_reopened(experiment, Path(store).name)
     plain = PlainGrasp.of_results(reference)
-    check_same(np.asarray(experiment.block.size), experiment.matrix, plain.readings, "the store")
+    check_all_same(sweep, data, experiment, plain.readings, Path(store).name)
     if of_jaws := [place.key for place in sweep.places if place.path[1:2] in JAW_KEYS]:
         words = "varies among the samples, not in the reference: what it changes in the readings is taken for lumps"
         notes: Sequence[str] = (f"{' and '.join(of_jaws)} {words}",)
@@ -176,36 +178,48 @@ def judged_samples(
 
 def _sensing(sweep: Sweep, data: xarray.Dataset, experiment: Grasp, name: str) -> tuple[Sensing, ...]:
     """How each sample was read: as the ``experiment`` of one, or by its own case where sensors or steps vary."""
-    grasps = [experiment] * data.sizes["sample"]
-    if any(place.path[1:2] in SENSED and place.path[-1] != SEED for place in sweep.places):
-        cases = stored_cases(sweep, data["sample"].values, data["case_id"].values, name)
-        grasps = [case.experiment for case in cases]  # type: ignore[misc]  # of one kind, as the first one is
+    own = any(place.path[1:2] in SENSED and place.path[-1] != SEED for place in sweep.places)
+    grasps = _own_grasps(sweep, data, name) if own else [experiment] * data.sizes["sample"]
     durations = np.asarray(data["time_s"].values[:, -1], dtype=float)
     return tuple(Sensing.of(grasp, float(duration)) for grasp, duration in zip(grasps, durations, strict=True))
 
 
-def stored_experiment(store: str | Path) -> Grasp:
-    """The first possible grasp of a store, which holds block, matrix and readout.
+def _own_grasps(sweep: Sweep, data: xarray.Dataset, name: str) -> list[Grasp]:
+    """What each sample was computed from, drawn again."""
+    cases = stored_cases(sweep, data["sample"].values, data["case_id"].values, name)
+    return [case.experiment for case in cases]  # type: ignore[misc]  # of one kind, as the first one is
+
+
+def check_all_same(sweep: Sweep, data: xarray.Dataset, first: Grasp, reference: Readings, name: str) -> None:
+    """Refuse samples of another block or matrix than the reference; ``first`` is one of them, as the others are unless they vary.
+
+    Raises
+    ------
+    InputError
+        Naming what differs.
+    """
+    vary = any(place.path[1:2] in SHARED for place in sweep.places)
+    for grasp in _own_grasps(sweep, data, name) if vary else [first]:
+        check_same(np.asarray(grasp.block.size), grasp.matrix, reference, "the store")
+
+
+def first_grasp(sweep: Sweep, name: str) -> Grasp:
+    """The first possible grasp of the store ``name``, which holds readout and loading.
 
     Raises
     ------
     InputError
         If it holds no grasps.
     StorageError
-        If it is no data set, or its case cannot be read.
+        If its case cannot be read.
     """
-    return _first_grasp(stored_sweep(Store.open(store)), Path(store).name)
-
-
-def _first_grasp(sweep: Sweep, name: str) -> Grasp:
     try:
-        drawn = (drawn_specimen(sweep, specimen)[0] for specimen in range(TRIED_SPECIMENS))
-        case = next((one.case for one in drawn if one.case is not None), None)
+        experiment = first_case(sweep).experiment
     except UNUSABLE as error:
         raise StorageError(f"{name}: the case in it cannot be read by this tactsim: {one_line(error)}") from None
-    if case is None or not isinstance(case.experiment, Grasp):
-        raise InputError(f"{name} holds samples of {sweep.kind or 'no kind'}; needed: grasps, as of cases/sweep_lumps.yaml")
-    return case.experiment
+    if not isinstance(experiment, Grasp):
+        raise InputError(f"{name} holds samples of {sweep.kind}; needed: grasps, as of cases/sweep_lumps.yaml")
+    return experiment
 
 
 def refuse_reopened(experiment: Grasp, name: str) -> None:

@@ -11,7 +11,7 @@ import numpy as np
 from pydantic import ValidationError
 
 from tactsim.array import Array
-from tactsim.errors import InputError
+from tactsim.errors import InputError, StorageError
 from tactsim.experiments.grasp.grasp import Grasp
 from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.interfaces import Inclusion
@@ -19,13 +19,15 @@ from tactsim.interfaces.both_jaws import READ_FORCE, TAXEL_FORCE, Source, has_ta
 from tactsim.interfaces.readings import Readings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.materials.homogeneous import stiffness_ratio
+from tactsim.outside.text import one_line
 from tactsim.refusals import first_fault
 from tactsim.results.reading import read_basis, read_result
 from tactsim.results.result import Result
+from tactsim.results.scene import UnreadableScene
 from tactsim.units import format_quantity
 
 SAME_CLOSING = 1e-3
-"""Largest relative difference of the closing of the reference."""
+"""Largest relative difference of two closings that are the same."""
 SAME_JAW = 1e-6
 """Difference in m, or in rad, of two jaws that are the same."""
 JAW_LENGTHS, JAW_ANGLES = ("width", "depth", "fillet"), ("tilt_x", "tilt_y")
@@ -38,11 +40,15 @@ def stored_grasp(folder: str) -> Result:
     Raises
     ------
     StorageError
-        If there is no result.
+        If there is no result, or its scene cannot be read.
     InputError
         If it is not that of a grasp with taxels.
     """
     result = read_basis(folder).result
+    if isinstance(result.scene, UnreadableScene):
+        raise StorageError(
+            f"{one_line(folder)}: the scene of the result cannot be read: {result.scene.reason}; {result.scene.remedy}"
+        )
     if not isinstance(result.scene, GraspScene) or not has_taxels(result, TAXEL_FORCE):
         raise InputError(
             f"{folder} holds the result of {result.kind} without forces of taxels; needed: a grasp or a matrix_readout with steps"
@@ -60,7 +66,7 @@ def computed_grasp(folder: str) -> Grasp:
     InputError
         If it does not keep the case of a grasp that this version can read.
     """
-    experiment = (read_result(folder, fields=False).provenance.get("case") or {}).get("experiment") or {}
+    experiment = read_result(folder, fields=False).provenance.get("case", {}).get("experiment", {})
     cls = Grasp.registered_as(experiment.get("kind"))
     if cls is None:
         raise InputError(f"{folder} does not hold the case of a grasp; give the folder that `tactsim run` wrote for a grasp")
@@ -110,14 +116,17 @@ def with_reference(readings: Readings, reference: Readings) -> Readings:
     """
     if readings.layout != reference.layout or not np.allclose(readings.block_size, reference.block_size, rtol=1e-9):
         raise InputError("the reference has another block or another matrix; needed: the same grasp without the lump")
-    if readings.closing is not None and reference.closing is not None:
-        away = abs(readings.closing - reference.closing)
-        if away > SAME_CLOSING * abs(readings.closing):
-            here, there = (format_quantity(value, "m") for value in (readings.closing, reference.closing))
-            raise InputError(f"the jaws have closed by {here}, those of the reference by {there}; needed: the same closing")
+    if readings.closing is not None and reference.closing is not None and not same_closing(reference.closing, readings.closing):
+        here, there = (format_quantity(value, "m") for value in (readings.closing, reference.closing))
+        raise InputError(f"the jaws have closed by {here}, those of the reference by {there}; needed: the same closing")
     valid = [part.valid for part in (readings, reference) if part.valid is not None]
     mask = np.logical_and.reduce(valid) if valid else None
     return replace(readings, reference=reference.forces, valid=mask)
+
+
+def same_closing(closing: Array | float, other: float) -> bool:
+    """Whether closings in m, one or (n,), are all the same as another one, but for steps and round-off."""
+    return bool((np.abs(np.subtract(closing, other)) <= SAME_CLOSING * abs(other)).all())
 
 
 def stiffness_ratios(folder: str, closing: float | None) -> tuple[tuple[float, float], ...]:

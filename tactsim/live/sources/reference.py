@@ -13,7 +13,7 @@ from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.deadline import stopped_by
 from tactsim.errors import InputError, OutOfTime
 from tactsim.experiments.localization.response_store import stored_response
-from tactsim.experiments.localization.source import SAME_CLOSING, jaw_notes, reference_notes, stored_grasp
+from tactsim.experiments.localization.source import SAME_CLOSING, jaw_notes, reference_notes, same_closing
 from tactsim.live.sources.recorded import SOURCES, result_recordings
 from tactsim.live.sources.scene import Frame, PageScene, Recording
 from tactsim.live.sources.watch import Watch
@@ -86,8 +86,6 @@ class Reference:
         StorageError
             If there is no result, or it is damaged.
         """
-        for folder in folders:
-            stored_grasp(folder)  # refuses what is no grasp
         results = [PlainResult(folder, result_recordings(folder)) for folder in folders]
         results.sort(key=lambda result: result.closing or 0.0)
         closings = np.array([result.closing or 0.0 for result in results])
@@ -121,7 +119,7 @@ class Reference:
             If the user has cancelled its computation.
         """
         ends = [result.closing for result in self.results]
-        if closing is None or ends[-1] is None or abs(closing - ends[-1]) <= SAME_CLOSING * abs(ends[-1]):
+        if closing is None or ends[-1] is None or same_closing(closing, ends[-1]):
             return self.results[-1].response(watch)
         known = np.array(ends, dtype=float)
         self._check_reach(closing, float(known[-1]))
@@ -197,8 +195,8 @@ def _known_frame(recording: Recording, frame: Frame) -> Frame | None:
         return last
     if frame.time is not None:
         then = recording.at(frame.time)
-        if then.closing is not None and abs(then.closing - closing) <= SAME_CLOSING * abs(closing):
+        if then.closing is not None and same_closing(then.closing, closing):
             return then
     rising = recording.closings[0] >= 0 and bool((np.diff(recording.closings) > 0).all())
-    same = last.closing is not None and abs(last.closing - closing) <= SAME_CLOSING * abs(closing)
+    same = last.closing is not None and same_closing(last.closing, closing)
     return last if same or not rising else None

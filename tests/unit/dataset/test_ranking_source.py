@@ -26,12 +26,16 @@ from sweeps import small_store
 
 from tactsim.cli import main
 from tactsim.dataset.ranking import samples as samples_module
+from tactsim.dataset.ranking.confusion import store_confusion
 from tactsim.dataset.ranking.reference import PlainGrasp
-from tactsim.dataset.ranking.samples import added_noise, judged_samples
+from tactsim.dataset.ranking.samples import added_noise, first_grasp, judged_samples
+from tactsim.dataset.sampling.drawing import drawn_specimen
+from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.use.loading import sample_case
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.localization.source import stored_grasp
+from tactsim.localization.estimators.hypotheses import HypothesesEstimator
 from tactsim.mesh.inclusions.sphere import Sphere
 from tactsim.results import write_result
 
@@ -66,6 +70,7 @@ def test_a_reference_at_the_wrong_closing_leaves_a_change(store: Path, plain: st
 def test_several_results_are_several_closings(tmp_path: Path) -> None:
     folders = [plain_result(tmp_path / f"plain{k}", np.array([c])) for k, c in enumerate(CLOSINGS[::-1])]
     plain = PlainGrasp.of_results(folders)
+    assert [PlainGrasp.of_results(order).folder for order in (folders, folders[::-1])] == [folders[0]] * 2
     assert plain.closings == pytest.approx([0.0, *CLOSINGS])
     assert plain.at(0.8e-3) == pytest.approx(plain_forces(np.array([0.8e-3]))[0])
     with pytest.raises(InputError, match="two or more"):
@@ -184,6 +189,38 @@ def test_another_reference_is_refused(store: Path, tmp_path: Path, changes: dict
     folder = plain_result(tmp_path / "other", **changes)
     with pytest.raises(InputError, match=words):
         judged_samples(store, [folder], source="taxel_force")
+
+
+@pytest.mark.parametrize("heights", ["20 mm, 22 mm", "22 mm, 20 mm"])
+def test_samples_of_another_block_than_the_first_are_refused(tmp_path: Path, plain: str, heights: str) -> None:
+    """Only the first sample was held against the reference; the places of the others were told in its block."""
+    varied = TEXT.replace("size: [40 mm, 40 mm, 20 mm]", f"size: [40 mm, 40 mm, {{values: [{heights}]}}]")
+    place = made_store(tmp_path, response(), varied)
+    with pytest.raises(InputError, match="the block of the store measures 40 mm x 40 mm x 22 mm, that of the reference"):
+        judged_samples(place, [plain], source="taxel_force")
+    with pytest.raises(InputError, match="the block of the store measures 40 mm x 40 mm x 22 mm, that of the reference"):
+        store_confusion(place, plain, HypothesesEstimator(), response=response())
+
+
+def test_a_grid_of_grasps_may_begin_with_impossible_ones(tmp_path: Path) -> None:
+    """The first three samples were looked at, and without a possible one the store was said to hold no grasps."""
+    impossible = "radius: {values: [30 mm, 31 mm, 32 mm, 3 mm]}"
+    text = TEXT.replace("{uniform: [8 mm, 32 mm]}", "20 mm").replace("radius: 3 mm", impossible)
+    text = text.replace("{samples: 40, seed: 3,", "{design: grid, seed: 3,")
+    path = tmp_path / "sweep.yaml"
+    path.write_text(text, encoding="utf-8")
+    sweep = load_sweep(path)
+    assert [drawn_specimen(sweep, k)[0].case is None for k in range(4)] == [True, True, True, False]
+    assert first_grasp(sweep, "grid").inclusions[0].shape.radius == pytest.approx(3e-3)
+
+
+@pytest.mark.filterwarnings("ignore:.*result.json was changed since tactsim wrote it")
+def test_a_reference_whose_scene_cannot_be_read_is_said_to_be_so(tmp_path: Path) -> None:
+    """It was said to have no forces of taxels."""
+    place = Path(plain_result(tmp_path / "plain")) / "result.json"
+    place.write_text(place.read_text().replace('"schema_version": 2', '"schema_version": 1'), encoding="utf-8")
+    with pytest.raises(StorageError, match="plain: the scene of the result cannot be read: it was written by an earlier version"):
+        PlainGrasp.of_results([str(place.parent)])
 
 
 def test_stores_that_cannot_be_judged_are_refused(store: Path, plain: str, tmp_path: Path) -> None:

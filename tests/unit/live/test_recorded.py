@@ -271,6 +271,15 @@ def test_several_references_serve_samples_of_other_closings(tmp_path: Path) -> N
         Reference.open([folders[0], folders[0]])
 
 
+def test_a_reference_that_was_changed_is_warned_of_once(tmp_path: Path) -> None:
+    folder = grasp_folder(tmp_path / "b", taxel_forces(2, lump=0.0), lump=False)
+    result = folder / "result.json"
+    result.write_text(result.read_text(encoding="utf-8") + "\n", encoding="utf-8")
+    with pytest.warns(UserWarning, match=r"result\.json was changed") as caught:
+        Reference.open([str(folder)])
+    assert len(caught) == 1
+
+
 def test_read_forces_are_not_compared_with_those_of_the_solution(tmp_path: Path) -> None:
     reference = Reference.open([str(grasp_folder(tmp_path / "b", taxel_forces(1, lump=0.0), lump=False))])
     frame = result_recordings(grasp_folder(tmp_path / "a", taxel_forces(1)))["taxel_force"].frame(0)
