@@ -19,7 +19,7 @@ from tactsim.dataset.store.blocks import Block, Journal, decoded, refuse_unfitti
 from tactsim.dataset.store.opening import Store
 from tactsim.dataset.store.writing import write
 from tactsim.dataset.text_counts import LONGEST_WARNING, TextCounts
-from tactsim.errors import StorageError, TactsimError
+from tactsim.errors import CaseError, StorageError, TactsimError
 from tactsim.outside.text import one_line
 from tactsim.units import rough_time
 
@@ -155,6 +155,8 @@ class SweepRun:
                     self.keep(outcome.block, block)
                     size = int(np.clip(TASK_SECONDS / max(float(block["wall_time"].mean()), 1e-6), 1, MOST_IN_TASK))
                 progress(self.tally)
+        except CaseError as error:
+            raise self.sweep.placed(error) from None
         finally:
             self.fold()
 

@@ -16,8 +16,9 @@ from tactsim.array import Array
 from tactsim.case.loading import validated_case
 from tactsim.case.model import Case
 from tactsim.case.yaml_reading import Path
+from tactsim.dataset.sampling.places import Place, filled, sizes_of
 from tactsim.dataset.sampling.settings import DesignName
-from tactsim.dataset.sampling.sweep import Place, Sweep, filled, sizes_of
+from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.errors import InputError, StorageError
 from tactsim.experiments.recording import seed_place
 from tactsim.interfaces.seeds import SEED, entries, seeds_in

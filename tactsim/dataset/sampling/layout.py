@@ -13,9 +13,10 @@ from tactsim.case.loading import SWEEP_SECTION
 from tactsim.case.model import Case
 from tactsim.dataset.cost import COST
 from tactsim.dataset.sampling.drawing import drawn_specimen, fault_of
+from tactsim.dataset.sampling.places import is_distribution
 from tactsim.dataset.sampling.settings import Condition
 from tactsim.dataset.sampling.suitable import check_suitable
-from tactsim.dataset.sampling.sweep import Sweep, is_distribution
+from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import index_variables
 from tactsim.errors import CaseError, suggestion
 from tactsim.experiments.recording import recorder_for
@@ -61,7 +62,10 @@ def layout_of(sweep: Sweep) -> Layout:
     if sweep.kind not in known:
         unknown = f"{sweep.kind!r}{suggestion(sweep.kind, known)}; allowed: {', '.join(sorted(known))}"
         raise sweep.error(("experiment", "kind"), unknown)
-    recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
+    try:
+        recorder = recorder_for(sweep.kind, sweep.settings, most_inclusions(sweep.document.value))
+    except CaseError as error:
+        raise sweep.placed(error) from None
     experiment = first_case(sweep).experiment
     _check_times(sweep, recorder, experiment)
     recorded = variables_of(recorder, experiment)
@@ -73,7 +77,7 @@ def layout_of(sweep: Sweep) -> Layout:
     names = [variable.name for variable in variables]
     repeated = sorted({name for name in names if names.count(name) > 1})
     if repeated:
-        raise CaseError(f"sweep: {', '.join(repeated)} would be stored twice; change sweep.quantities")
+        raise sweep.error((SWEEP_SECTION, "quantities"), f"{', '.join(repeated)} would be stored twice; leave them out")
     _check_splits(sweep, labels)
     return Layout(recorder, variables)
 
@@ -124,9 +128,13 @@ def varied_variables(sweep: Sweep) -> list[Variable]:
 def most_inclusions(document: Any) -> int:
     """Largest number of inclusions that a document can draw."""
     experiment = document.get("experiment") if isinstance(document, dict) else None
-    inclusions = experiment.get("inclusions") if isinstance(experiment, dict) else None
+    return _longest(experiment.get("inclusions")) if isinstance(experiment, dict) else 0
+
+
+def _longest(inclusions: Any) -> int:
+    """Length of the longest list that may be drawn for a value, whose options may be drawn from options in turn."""
     if isinstance(inclusions, dict) and is_distribution(inclusions):
-        return max((len(option) for option in inclusions.get("choice", []) if isinstance(option, list)), default=0)
+        return max(map(_longest, inclusions.get("choice", [])), default=0)
     return len(inclusions) if isinstance(inclusions, list) else 0
 
 

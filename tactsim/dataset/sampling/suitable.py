@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -10,10 +11,11 @@ import numpy as np
 from pydantic import ValidationError
 
 from tactsim.case.model import case_class, experiment_class
-from tactsim.case.yaml_reading import Path
+from tactsim.case.yaml_reading import Path, Problem
 from tactsim.dataset.sampling.fixed_parts import FixedParts
-from tactsim.dataset.sampling.sweep import Place, Sweep, filled
-from tactsim.errors import CaseError, InvalidQuantity, TactsimError, UnknownName
+from tactsim.dataset.sampling.places import Place, filled
+from tactsim.dataset.sampling.sweep import Sweep
+from tactsim.errors import InvalidQuantity, TactsimError, UnknownName
 from tactsim.interfaces.distributions import Listed
 from tactsim.refusals import as_written, details, path_in_file, refusals_of
 from tactsim.schema_of_model import value_at
@@ -54,9 +56,9 @@ def check_suitable(sweep: Sweep) -> None:
     Raises
     ------
     CaseError
-        With the distribution and one of its values that has another type, unit or dimension than the place, if all its
-        numbers lie beyond the same bound of the place, or with what does not vary and is refused whatever is drawn: an option
-        that is misspelt would be drawn again until another comes, and be missed when all is computed.
+        With a line for every distribution with one of its values that has another type, unit or dimension than the place, or
+        whose numbers all lie beyond the same bound of the place, and for all that does not vary and is refused whatever is drawn:
+        an option that is misspelt would be drawn again until another comes, and be missed when all is computed.
     """
     try:
         model = case_class(experiment_class(sweep.kind))
@@ -67,6 +69,7 @@ def check_suitable(sweep: Sweep) -> None:
     before = {path: _cases_before(path, entries) for path in entries}
     cases = max(before[path] * len(tried) for path, tried in entries.items())
     beyond: dict[Path, list[Beyond]] = {}
+    wrong: dict[Path, Problem] = {}
     fixed = FixedParts(sweep.document.value)
     for case in range(min(cases, MOST_TRIED)):
         drawn = {path: tried[case // before[path] % len(tried)] for path, tried in entries.items()}
@@ -75,13 +78,14 @@ def check_suitable(sweep: Sweep) -> None:
         try:
             model.model_validate_json(json.dumps(value), strict=True, context=context)
         except ValidationError as error:
-            unsuitable = _wrong_in_type(error, value)
+            unsuitable, reasons = _wrong_in_type(error, value), refusals_of(error, value, model)
             fixed.refuse(used, error, value, model, unsuitable)
             for path in used:
                 if (in_case := _in_case(path, entries)) in unsuitable and not isinstance(drawn[path][0], dict | list):
-                    raise _refused(sweep, path, refusals_of(error, value, model)[in_case]) from None
+                    wrong.setdefault(path, _refused(sweep, path, reasons[in_case]))
+                    continue
                 bounds = _bounds_beyond(error, value, in_case)
-                reason = refusals_of(error, value, model)[in_case] if bounds else ""
+                reason = reasons[in_case] if bounds else ""
                 beyond.setdefault(path, []).append(Beyond(drawn[path][1], bounds, reason))
         except TactsimError:
             used = {}  # of a whole case, such as a file that is gone
@@ -89,12 +93,9 @@ def check_suitable(sweep: Sweep) -> None:
             fixed.accept(used)
             for path in used:
                 beyond.setdefault(path, []).append(Beyond(drawn[path][1], frozenset(), ""))
-    if cases <= MOST_TRIED and (problems := fixed.problems()):
+    problems = [*wrong.values(), *(fixed.problems() if cases <= MOST_TRIED else ()), *_wholly_beyond(sweep, entries, beyond)]
+    if problems:
         raise sweep.errors(problems)
-    of_numbers = {place.path for place in sweep.places if not place.by_index}
-    for path, tries in beyond.items():
-        if path in of_numbers and {one.number for one in tries} == {number for _, number in entries[path]}:
-            _refuse_wholly_beyond(sweep, path, tries)
 
 
 def _wrong_in_type(error: ValidationError, value: Any) -> set[Path]:
@@ -107,10 +108,13 @@ def _wrong_in_type(error: ValidationError, value: Any) -> set[Path]:
     return {path for path, of_type in by_place.items() if all(of_type)}
 
 
-def _refuse_wholly_beyond(sweep: Sweep, path: Path, tries: list[Beyond]) -> None:
-    """Refuses numbers of which the least and the largest lie beyond the same bound, and so do all."""
-    if frozenset.intersection(*(one.bounds for one in tries)):
-        raise _refused(sweep, path, f"{tries[0].reason}, which none of its values is")
+def _wholly_beyond(sweep: Sweep, entries: Mapping[Path, list[Entry]], beyond: Mapping[Path, list[Beyond]]) -> Iterator[Problem]:
+    """Numbers of which the least and the largest lie beyond the same bound, and so do all."""
+    of_numbers = {place.path for place in sweep.places if not place.by_index}
+    for path, tries in beyond.items():
+        whole = path in of_numbers and {one.number for one in tries} == {number for _, number in entries[path]}
+        if whole and frozenset.intersection(*(one.bounds for one in tries)):
+            yield _refused(sweep, path, f"{tries[0].reason}, which none of its values is")
 
 
 def _bounds_beyond(error: ValidationError, value: Any, path: Path) -> frozenset[tuple[str, float]]:
@@ -157,7 +161,7 @@ def _in_case(path: Path, entries: dict[Path, list[Entry]]) -> Path:
     return tuple(kept)
 
 
-def _refused(sweep: Sweep, path: Path, reason: str) -> CaseError:
+def _refused(sweep: Sweep, path: Path, reason: str) -> Problem:
     given = as_written(value_at(sweep.document.value, path))
     hint = "; these are drawn by {integer: [first, last]} or listed by {values: [...]}" if reason.endswith(WHOLE) else ""
-    return sweep.error(path, f"{given} does not suit this place: {reason}{hint}")
+    return Problem(path, 0, f"{given} does not suit this place: {reason}{hint}")

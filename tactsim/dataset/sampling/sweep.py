@@ -6,11 +6,11 @@ import hashlib
 import json
 import math
 import os
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from pathlib import Path as FilePath
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import ValidationError
 
@@ -19,12 +19,14 @@ from tactsim.case.loading import SWEEP_SCHEMA, SWEEP_SECTION, case_error, read_d
 from tactsim.case.loading import Place as Where
 from tactsim.case.model import SCHEMA as CASE_SCHEMA
 from tactsim.case.yaml_reading import Document, Path, Problem, YamlProblems
+from tactsim.dataset.sampling.places import Place, places_of, sizes_of
 from tactsim.dataset.sampling.settings import LICENCE, OF_THE_CARD, SweepSettings
 from tactsim.dataset.store.arrays import MOST_SAMPLES
-from tactsim.errors import CaseError, InputError, suggestion
-from tactsim.interfaces.distributions import READERS, Distribution, Listed, distribution
+from tactsim.errors import CaseError, suggestion
 from tactsim.refusals import as_written
 from tactsim.schema_of_model import value_at
+
+Read = TypeVar("Read")
 
 
 @dataclass(frozen=True, eq=False)
@@ -84,6 +86,11 @@ class Sweep:
         """An error at a key path of the file, with its line."""
         return self.errors([Problem(path, 0, message)])
 
+    def placed(self, error: CaseError) -> CaseError:
+        """An error whose message begins with a key path of the section, with file and line before it."""
+        key, _, message = str(error).partition(": ")
+        return self.error(tuple(key.split(".")), message) if key.startswith(f"{SWEEP_SECTION}.") else error
+
     def errors(self, problems: list[Problem]) -> CaseError:
         """An error of a line for each problem of the file; their lines are looked up."""
         return case_error([replace(one, line=self.document.line(one.path)) for one in problems], self.where)
@@ -135,14 +142,26 @@ def sweep_of_document(
             stated = as_written(value["schema"]) if "schema" in value else "missing"
             instead = "; compute a case with: tactsim run" if value.get("schema") == CASE_SCHEMA else ""
             raise YamlProblems(Problem(("schema",), 0, f"{stated}; a sweep begins with 'schema: {SWEEP_SCHEMA}'{instead}"))
-        settings = _settings(document, value.pop(SWEEP_SECTION, None), units=not checked)
+        section, problems = value.pop(SWEEP_SECTION, None), list[Problem]()
         value["schema"] = CASE_SCHEMA
-        places = tuple(places_of(value, ()))
+        settings = _unless_wrong(lambda: _settings(document, section, units=not checked), problems)
+        places = _unless_wrong(lambda: places_of(value, ()), problems)
+        if settings is None or places is None:
+            raise YamlProblems(*problems)
         plain = replace(document, value=value)
         return replace(_sized(plain, where, settings, samples, places), checked=checked)
     except YamlProblems as error:
         problems = [Problem(p.path, document.line(p.path), p.message) for p in error.problems]
         raise case_error(problems, where) from None
+
+
+def _unless_wrong(read: Callable[[], Read], problems: list[Problem]) -> Read | None:
+    """What is read; None if something is wrong with it, which is added to the problems."""
+    try:
+        return read()
+    except YamlProblems as error:
+        problems += error.problems
+        return None
 
 
 @lru_cache(maxsize=4)
@@ -212,77 +231,5 @@ def _grid(
     return Sweep(document, where, settings, outer * inner, inner, places[0], places[1])
 
 
-def sizes_of(places: tuple[Place, ...]) -> tuple[int, ...]:
-    """Number of options of each place of a grid."""
-    return tuple(len(place.distribution.options or ()) for place in places)
-
-
 def _wrong(key: str, message: str) -> YamlProblems:
     return YamlProblems(Problem((SWEEP_SECTION, key), 0, message))
-
-
-@dataclass(frozen=True)
-class Place:
-    """A key path of a document with what stands there instead of one value."""
-
-    path: Path
-    distribution: Distribution
-
-    @property
-    def key(self) -> str:
-        """The key path as text."""
-        return ".".join(map(str, self.path))
-
-    @property
-    def by_index(self) -> bool:
-        """Whether what is drawn are options that are no numbers, of which the number of the option is stored."""
-        return isinstance(self.distribution, Listed) and self.distribution.numbers is None
-
-    @property
-    def variable(self) -> str:
-        """Name of the stored variable."""
-        return "varied_" + "_".join(map(str, self.path[1:] if self.path[:1] == ("experiment",) else self.path))
-
-
-def places_of(value: Any, path: Path) -> Iterator[Place]:
-    """Every place in a value that stands at ``path``, by its keys, not their order in the text; those within options included.
-
-    Raises
-    ------
-    YamlProblems
-        If a distribution is written wrongly.
-    """
-    if is_distribution(value):
-        try:
-            read = distribution(value)
-        except InputError as error:
-            raise YamlProblems(Problem(path, 0, str(error))) from None
-        yield Place(path, read)
-        if isinstance(read, Listed) and read.numbers is None:
-            for index, option in enumerate(read.options):
-                yield from places_of(option, (*path, "choice", index))
-    elif isinstance(value, dict):
-        for key, item in sorted(value.items()):
-            yield from places_of(item, (*path, key))
-    elif isinstance(value, list):
-        for index, item in enumerate(value):
-            yield from places_of(item, (*path, index))
-
-
-def is_distribution(value: Any) -> bool:
-    """Whether a value of a document is meant as a distribution: a mapping to a list, by the name of one."""
-    return isinstance(value, dict) and any(name in value for name in READERS) and "kind" not in value
-
-
-def filled(value: Any, path: Path, drawn: Mapping[Path, tuple[Any, float]], used: dict[Path, float]) -> Any:
-    """The value with what was drawn for each place; the stored number of every place that counts is added to ``used``."""
-    if path in drawn:
-        chosen, number = drawn[path]
-        used[path] = number
-        inner = (*path, "choice", int(number))
-        return filled(chosen, inner, drawn, used) if isinstance(chosen, dict | list) else chosen
-    if isinstance(value, dict):
-        return {key: filled(item, (*path, key), drawn, used) for key, item in value.items()}
-    if isinstance(value, list):
-        return [filled(item, (*path, index), drawn, used) for index, item in enumerate(value)]
-    return value

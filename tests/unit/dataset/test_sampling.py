@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 from pathlib import Path
 
 import numpy as np
@@ -12,7 +13,7 @@ from sweeps import TEXT, sweep_file
 from tactsim.cli import main
 from tactsim.dataset.running.computing import computed
 from tactsim.dataset.sampling.drawing import design_point, drawn_specimen
-from tactsim.dataset.sampling.layout import first_case, layout_of, split_of
+from tactsim.dataset.sampling.layout import first_case, layout_of, most_inclusions, split_of
 from tactsim.dataset.sampling.suitable import check_suitable
 from tactsim.dataset.sampling.sweep import Sweep, load_sweep, sweep_of_text
 from tactsim.dataset.store.blocks import decoded
@@ -279,6 +280,33 @@ def test_what_is_refused_whatever_is_drawn_is_refused_before_anything_is_drawn(
     assert "101 draws" not in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    ("changes", "words"),
+    [
+        (
+            {"samples: 24": "samples: 0", "[1 mm, 2.5 mm]": "[2.5 mm, 1 mm]", "uniform: [2 mm, 4 mm]": "uniform: 3 mm"},
+            [r":6: experiment\.inner_radius: ", r":7: experiment\.outer_radius: ", r":14: sweep\.samples: "],
+        ),
+        (
+            {"[1 mm, 2.5 mm]": "[1 kPa, 2 kPa]", "[2 mm, 4 mm]": "[-3 mm, -1 mm]", "points: 5": "pionts: 5"},
+            [r":6: experiment\.inner_radius: .*wrong", r":7: experiment\.outer_radius: .*none of", r":12: experiment\.pionts: "],
+        ),
+    ],
+    ids=["written wrongly", "not suited"],
+)
+def test_all_mistakes_of_a_sweep_are_named_at_once(tmp_path: Path, changes: dict[str, str], words: list[str]) -> None:
+    text = TEXT
+    for old, new in changes.items():
+        assert old in text
+        text = text.replace(old, new, 1)
+    with pytest.raises(CaseError) as caught:
+        check_suitable(sweep_of(tmp_path, text))
+    lines = str(caught.value).splitlines()
+    assert len(lines) == len(words)
+    for line, expected in zip(lines, words, strict=True):
+        assert re.search(expected, line)
+
+
 def test_workers_do_not_hold_the_distributions_against_their_places_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -308,8 +336,16 @@ def test_what_is_possible_in_part_is_drawn_again(tmp_path: Path, old: str, new: 
 
 def test_a_kind_without_recorder_needs_names(tmp_path: Path) -> None:
     text = TEXT.replace("title: A small sweep", "title: x").replace("kind: closed_form", "kind: film_creep")
-    with pytest.raises(CaseError, match=r"sweep\.quantities: missing; .*those that tactsim run reports of one such case"):
+    with pytest.raises(CaseError, match=r"sweep.yaml:\d+: sweep\.quantities: missing; .*those that tactsim run reports of one"):
         layout_of(sweep_of(tmp_path, text))
+
+
+def test_options_of_inclusions_among_options_have_places_in_the_store() -> None:
+    """Samples with more inclusions than the outermost options list failed, as if the store had no place for them."""
+    nested = {"choice": [[], {"choice": [["one"], ["one", "another"]]}]}
+    assert most_inclusions({"experiment": {"inclusions": nested}}) == 2
+    assert most_inclusions({"experiment": {"inclusions": ["one"]}}) == 1
+    assert most_inclusions({"experiment": {}}) == 0
 
 
 def test_a_file_without_places_is_refused(tmp_path: Path) -> None:
@@ -319,12 +355,12 @@ def test_a_file_without_places_is_refused(tmp_path: Path) -> None:
 
 def test_what_a_kind_does_not_use_is_refused() -> None:
     for part, words in (
-        ("times: 3", r"sweep\.times: 3, but .* only the end"),
+        ("times: 3", r"^--set sweep\.times: 3, but .* only the end"),
         ("reading: {}", r"sweep\.reading: .* closed_form"),
     ):
         name, value = part.split(": ")
         with pytest.raises(CaseError, match=words):
-            layout_of(load_sweep(CASES / "sweep_rates.yaml", (f"sweep.{name}={value}",)))
+            layout_of(load_sweep(CASES / "sweep_rates.yaml", (f"sweep.{name}={value}",), option="--set"))
 
 
 def test_a_grid_may_begin_with_impossible_cases(tmp_path: Path) -> None:

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import scipy
 
-from tactsim.dataset.sampling.sweep import filled, places_of
+from tactsim.dataset.sampling.places import filled, places_of
 from tactsim.errors import InvalidQuantity
 from tactsim.interfaces.distributions import distribution
 
@@ -62,7 +62,7 @@ def test_weights_count() -> None:
 
 def test_places_within_options_have_values_only_if_chosen() -> None:
     document = {"a": {"choice": [{"kind": "x", "r": {"uniform": [0, 1]}}, "none"]}, "b": [{"integer": [1, 2]}]}
-    places = list(places_of(document, ()))
+    places = places_of(document, ())
     assert [place.key for place in places] == ["a", "a.choice.0.r", "b.0"]
     used: dict = {}
     values = {place.path: place.distribution.value(0.1) for place in places}
