@@ -15,11 +15,11 @@ from tactsim.dataset.sampling.layout import Layout
 from tactsim.dataset.sampling.stored import attributes_of, stored_layout
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS, WORDS, differences, earlier_words
-from tactsim.dataset.store.blocks import JOURNAL
+from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.files import CARD, foreign_files, is_torn, walked
 from tactsim.dataset.store.labels import label_faults, labels_of
 from tactsim.dataset.store.opening import ARRAYS, Store
-from tactsim.dataset.store.verifying import SHOWN, ChunkRead, computed_chunks, lost_status, waiting_in_journal
+from tactsim.dataset.store.verifying import SHOWN, ChunkRead, computed_chunks, lost_status
 from tactsim.errors import StorageError
 from tactsim.interfaces.variable import Variable
 from tactsim.outside.text import first_names, one_line
@@ -167,7 +167,8 @@ def _files(store: Store, variables: Iterable[Variable]) -> Iterator[Finding]:
 def _missing(store: Store, status: Array) -> Iterator[Finding]:
     pending, lost, waiting = np.flatnonzero(status == PENDING), lost_status(store), np.arange(0)
     try:
-        waiting = waiting_in_journal(store)
+        numbers = Journal(store.path / JOURNAL).waiting(len(status))
+        waiting = numbers[status[numbers] == PENDING]
     except StorageError as error:
         yield Finding("damaged", (), f"{error}")
     if lost.size:

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 import os
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
 
+from tactsim.array import Array
 from tactsim.code_identity import code_identity
 from tactsim.dataset.running.run import SweepRun, Tally
 from tactsim.dataset.sampling.layout import Layout, layout_of
@@ -20,7 +21,7 @@ from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.files import refuse_links, remove_torn
 from tactsim.dataset.store.labels import labels_of
 from tactsim.dataset.store.opening import Store
-from tactsim.dataset.store.verifying import damaged_samples, mark_pending
+from tactsim.dataset.store.verifying import damaged_samples, lost_status, mark_pending
 from tactsim.dataset.store.writing import consolidate, create, resize, restore, restore_labels, set_attributes
 from tactsim.deadline import TOO_LONG
 from tactsim.errors import CaseError, StorageError
@@ -97,8 +98,7 @@ def _continued(sweep: Sweep, layout: Layout, place: Path, resume: bool, accept_c
     layout = layout_within(store, layout)
     store = _put_right(sweep, layout, store)
     run = _run(sweep, layout, store)
-    run.recover()
-    _mark_damaged(run)
+    _recover(run)
     if earlier is not None and (sweep.settings.time_limit or math.inf) > earlier:
         _mark_too_slow(run)
     if code_identity() != store.attributes["codes"][-1]:
@@ -159,11 +159,18 @@ def _mark_too_slow(run: SweepRun) -> None:
     run.tally.retried = len(slow)
 
 
-def _mark_damaged(run: SweepRun) -> None:
-    """Marks every sample pending that counts as computed but is not what was written."""
+def _recover(run: SweepRun) -> None:
+    """Marks every sample pending that counts as computed but is not what was written, and brings in what the journal holds."""
     damaged = damaged_samples(run.store, run.layout.variables)
-    if damaged:
-        numbers = np.unique(np.concatenate(list(damaged.values())))
-        mark_pending(run.store, numbers)
-        run.tally.again = len(numbers)
-        run.tally.damaged |= {reason: len(samples) for reason, samples in damaged.items()}
+    mark_pending(run.store, _of_all(damaged))
+    run.recover()  # into chunks that can be read: others were removed
+    if (lost := lost_status(run.store)).size:  # what was in the journal is not
+        damaged["status is gone"] = lost
+        mark_pending(run.store, lost)
+    run.tally.again = len(np.intersect1d(_of_all(damaged), run.store.pending()))
+    run.tally.damaged |= {reason: len(samples) for reason, samples in damaged.items()}
+
+
+def _of_all(damaged: Mapping[str, Array]) -> Array:
+    """Every sample (n,) that is damaged for one reason or another."""
+    return np.unique(np.concatenate([np.arange(0), *damaged.values()]))

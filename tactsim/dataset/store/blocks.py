@@ -121,6 +121,24 @@ class Journal:
                         return
                     yield content
 
+    def waiting(self, samples: int) -> Array:
+        """Numbers (n,) of the samples in its complete blocks, damaged ones left out, of a data set of so many ``samples``.
+
+        Raises
+        ------
+        StorageError
+            If it cannot be read, or is no journal.
+        """
+        numbers = [np.arange(0)]
+        for content in self.blocks():
+            try:
+                block = decoded(content)
+                refuse_unfitting(block, (), samples)
+            except StorageError:
+                continue  # --resume says so, and computes its samples again
+            numbers.append(block["sample"])
+        return np.unique(np.concatenate(numbers))
+
     def refuse_foreign(self) -> None:
         """Refuses anything else than a journal in its place.
 

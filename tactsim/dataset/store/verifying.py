@@ -11,7 +11,7 @@ import numpy as np
 
 from tactsim.array import Array
 from tactsim.dataset.store.arrays import DONE, FAILED, META, PENDING
-from tactsim.dataset.store.blocks import JOURNAL, NOT_SUMMED, Journal, checksum, decoded, refuse_unfitting
+from tactsim.dataset.store.blocks import JOURNAL, NOT_SUMMED, checksum
 from tactsim.dataset.store.opening import Store, consolidated_metadata
 from tactsim.errors import StorageError, shown
 from tactsim.interfaces.variable import Variable
@@ -76,6 +76,7 @@ def damaged_samples(store: Store, variables: Sequence[Variable]) -> dict[str, Ar
     """
     damage: dict[str, list[Array]] = {}
     status = _readable_status(store, damage)
+    _remove_unreadable(store, variables, status)
     for read in computed_chunks(store, variables, status):
         for name, reason in read.unreadable.items():
             damage.setdefault(f"{name} cannot be read", []).append(read.numbers)
@@ -84,9 +85,6 @@ def damaged_samples(store: Store, variables: Sequence[Variable]) -> dict[str, Ar
             damage.setdefault(f"{name} is gone", []).append(lost)
         if read.changed.size:
             damage.setdefault(CHANGED, []).append(read.changed)
-    lost = lost_status(store)
-    if lost.size:
-        damage.setdefault("status is gone", []).append(lost)
     unknown = np.flatnonzero(status > FAILED)
     if unknown.size:
         damage.setdefault(UNKNOWN, []).append(unknown)
@@ -123,6 +121,19 @@ def _readable_status(store: Store, damage: dict[str, list[Array]]) -> Array:
             damage.setdefault("status cannot be read", []).append(np.arange(rows.start, rows.stop))
             _remove_chunk(store, "status", number, str(error))
     return status
+
+
+def _remove_unreadable(store: Store, variables: Sequence[Variable], status: Array) -> None:
+    """Removes chunks that cannot be read and hold no computed sample by the status (samples,): a machine that lost its power
+    left them half written, and the journal still has what they should hold."""
+    per_chunk = store.described["status"].chunks[0]
+    computed = set(np.unique(np.flatnonzero(status != PENDING) // per_chunk).tolist())
+    for number in sorted(set(range(-(-len(status) // per_chunk))) - computed):
+        for variable in variables:
+            try:
+                store.read(variable.name, slice(number * per_chunk, (number + 1) * per_chunk))
+            except StorageError as error:
+                _remove_chunk(store, variable.name, number, str(error))
 
 
 def _changed(read: ChunkRead, variables: Sequence[Variable]) -> Array:
@@ -254,26 +265,6 @@ def lost_status(store: Store) -> Array:
     ]
     numbers = np.arange(status.shape[0])
     return numbers[np.isin(numbers // per_chunk, gone)]
-
-
-def waiting_in_journal(store: Store) -> Array:
-    """Numbers (n,) of the samples that are computed and stand in the journal, not yet in the arrays, damaged blocks left out.
-
-    Raises
-    ------
-    StorageError
-        If the journal cannot be read, or another file stands in its place.
-    """
-    variables = [variable for variable in stored_variables(store) if variable.name == "status"]
-    numbers = []
-    for content in Journal(store.path / JOURNAL).blocks():
-        try:
-            block = decoded(content)
-            refuse_unfitting(block, variables, store.samples)
-        except StorageError:
-            continue  # --resume says so, and computes its samples again
-        numbers.append(block["sample"])
-    return np.intersect1d(np.concatenate([np.arange(0), *numbers]), store.pending())
 
 
 def stored_variables(store: Store) -> Iterator[Variable]:

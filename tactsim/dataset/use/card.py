@@ -29,6 +29,7 @@ from tactsim.dataset.use.counts import (
     status_lines,
     warnings_of,
 )
+from tactsim.dataset.use.loading import refuse_half_extended
 from tactsim.outside.text import aligned, markdown_table, one_line
 from tactsim.storage.own_files import OWN_LIST, OwnFiles
 
@@ -231,9 +232,10 @@ def description(path: str | Path) -> str:
     Raises
     ------
     StorageError
-        If the folder is not a data set, or its description is damaged or was changed.
+        If the folder is not a data set, its description is damaged or was changed, or a run was killed while it made room.
     """
     store = Store.open(path)
+    refuse_half_extended(store)
     refuse_redescribed(store)
     attributes = store.attributes
     lines = [one_line(attributes["title"] or path), f"  {one_line(attributes['description'])}"]

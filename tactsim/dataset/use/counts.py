@@ -11,8 +11,8 @@ from tactsim.dataset.cost import COST
 from tactsim.dataset.sampling.settings import Splits
 from tactsim.dataset.sampling.sweep import Sweep
 from tactsim.dataset.store.arrays import DONE, FAILED, PENDING, STATUS
+from tactsim.dataset.store.blocks import JOURNAL, Journal
 from tactsim.dataset.store.opening import Store
-from tactsim.dataset.store.verifying import waiting_in_journal
 from tactsim.dataset.text_counts import LONGEST_WARNING, CountedText, TextCounts
 from tactsim.errors import StorageError, shown
 from tactsim.outside.text import one_line
@@ -25,11 +25,13 @@ UNLIKELY = 0.01
 
 def status_lines(store: Store) -> list[str]:
     """Samples by status, and those that are computed and not yet in the arrays, which count as neither pending nor done."""
+    numbers, note = np.arange(0), ""
     try:
-        waiting, note = len(waiting_in_journal(store)), ""
+        numbers = Journal(store.path / JOURNAL).waiting(store.samples)
     except StorageError as error:
-        waiting, note = 0, f"  {error}"
-    counts = status_counts(store)
+        note = f"  {error}"
+    status = store.read("status")  # after the journal, and once: what a sweep that is running brings in meanwhile counts once
+    waiting, counts = int((status[numbers] == PENDING).sum()), _by_status(status)
     counts["pending"] -= waiting
     lines = [f"  {name:<28} {count}" for name, count in counts.items()]
     if waiting:
@@ -40,7 +42,10 @@ def status_lines(store: Store) -> list[str]:
 
 def status_counts(store: Store) -> dict[str, int]:
     """Samples by status."""
-    status = store.read("status")
+    return _by_status(store.read("status"))
+
+
+def _by_status(status: Array) -> dict[str, int]:
     return {name: int((status == number).sum()) for number, name in enumerate(STATUS)}
 
 

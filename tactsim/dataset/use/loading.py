@@ -15,6 +15,7 @@ from tactsim.dataset.store.arrays import DONE, FAILED
 from tactsim.errors import InputError, StorageError, UnknownName, shown
 from tactsim.outside.extras import extras_named
 from tactsim.outside.files import named_path
+from tactsim.outside.text import one_line
 
 if TYPE_CHECKING:
     import xarray
@@ -138,15 +139,28 @@ def dataset_of(store: Store) -> xarray.Dataset:
     from tactsim.dataset.store.labels import labels_along
     from tactsim.dataset.store.opening import ARRAYS, reading
 
-    lengths = {name: array.shape[0] for name, array in store.described.items()}
-    if len(set(lengths.values())) > 1:
-        reason = f"its arrays have {min(lengths.values())} to {max(lengths.values())} samples"
-        raise StorageError(f"{store.path} cannot be opened: {reason}: a run was killed while it made room; go on with --resume")
+    refuse_half_extended(store)
     with reading(store.path):
         whole = xarray.open_zarr(store.group.store, chunks=None, consolidated=False)
     declared = dict.fromkeys([*store.attributes.get(ARRAYS, ()), *store.described])
     whole = whole[[name for name in declared if name in whole.data_vars]]
     return whole.assign_coords(labels_along({str(name): size for name, size in whole.sizes.items()}))
+
+
+def refuse_half_extended(store: Store) -> None:
+    """Refuses arrays of different lengths, as a run leaves them that was killed while it made room for more samples.
+
+    Raises
+    ------
+    StorageError
+        With the lengths.
+    """
+    lengths = {array.shape[0] for array in store.described.values()}
+    if len(lengths) > 1:
+        raise StorageError(
+            f"{one_line(store.path)} cannot be opened: its arrays have {min(lengths)} to {max(lengths)} samples: a run was "
+            "killed while it made room; go on with --resume"
+        )
 
 
 def names_in(given: str | Iterable[str], what: str) -> list[str]:

@@ -287,16 +287,23 @@ def test_nothing_new_is_put_into_a_store(whole: Path, tmp_path: Path) -> None:
     assert check(kept).findings == ()
 
 
-def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def left_in_journal(sweep: Sweep, place: Path, monkeypatch: pytest.MonkeyPatch, *, resume: bool = False) -> int:
+    """How many samples a run left in the journal whose arrays could not be written."""
+
     def full(*_: object) -> None:
         raise StorageError("no room")
 
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
-    with monkeypatch.context() as patch, opened_run(sweep, place) as going:
+    with monkeypatch.context() as patch, opened_run(sweep, place, resume=resume) as going:
         patch.setattr(running, "write", full)
         with pytest.raises(StorageError, match="no room"):
             going.compute(Inline(sweep), lambda tally: None)
-    findings, waiting = check(place).findings, int(going.tally.done)
+    return int(going.tally.done)
+
+
+def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    waiting = left_in_journal(sweep, place, monkeypatch)
+    findings = check(place).findings
     assert [finding.kind for finding in findings] == ["missing", "unfinished"]
     assert f"24 samples are not in the arrays, {waiting} of them computed and in the journal" in findings[0].words
     lines = description(place).splitlines()
@@ -305,6 +312,55 @@ def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path
     with opened_run(sweep, place, resume=True, accept_changes=True):
         pass
     assert_same(whole, place)
+
+
+@pytest.mark.parametrize("before", [0, 1], ids=["of the journal alone", "with computed samples"])
+def test_a_chunk_that_cannot_be_read_does_not_keep_the_journal_out(
+    before: int, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A machine that loses its power leaves chunks empty; --resume ended with the advice to go on with --resume."""
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    if before:
+        with pytest.raises(KeyboardInterrupt):
+            run_sweep(sweep, place, stop_after=before)
+    assert left_in_journal(sweep, place, monkeypatch, resume=before > 0)
+    computed, chunk = 24 - len(Store.open(place).pending()), place / "force/c/0/0"
+    chunk.parent.mkdir(parents=True, exist_ok=True)
+    chunk.write_bytes(b"")
+    going = run_sweep(sweep, place, resume=True)
+    assert going.tally.again == computed
+    assert (computed > 0) == (before > 0)
+    assert_same(whole, place)
+    assert not (place / JOURNAL).exists()
+    assert check(place).findings == ()
+
+
+def test_samples_that_come_into_the_arrays_while_they_are_counted_count_once(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """They were taken off those that are pending twice, and counted as waiting and as done."""
+    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    waiting, read, reads = left_in_journal(sweep, place, monkeypatch), Store.read, []
+
+    def meanwhile(store: Store, name: str, *rows: Any) -> np.ndarray:
+        values = read(store, name, *rows)
+        if name == "status" and not reads:
+            reads.append(name)
+            with opened_run(sweep, place, resume=True):
+                pass
+        return values
+
+    monkeypatch.setattr(Store, "read", meanwhile)
+    counts = dict(line.split()[:2] for line in description(place).splitlines()[3:7])
+    assert counts == {"pending": f"{24 - waiting}", "done": "0", "failed": "0", "waiting": f"{waiting}"}
+
+
+def test_a_store_that_was_being_extended_is_not_described(whole: Path, tmp_path: Path) -> None:
+    place = Path(shutil.copytree(whole, tmp_path / "s.zarr"))
+    split = Store.open(place, writing=True).array("split")
+    split.resize((30,))
+    with pytest.raises(StorageError, match="have 24 to 30 samples: a run was killed while it made room; go on with --resume"):
+        description(place)
 
 
 def test_a_store_that_is_written_is_in_use_by_whatever_link_it_is_named(tmp_path: Path) -> None:
@@ -358,7 +414,7 @@ def test_a_sample_that_fails_is_kept_with_its_reason(tmp_path: Path) -> None:
 
 
 OF_ANOTHER_DIMENSION = "largest_force: 'Pa' is not a unit of what is in 'N'; expected a unit of its dimension"
-NO_SUCH_QUANTITY = "sweep.quantities.largest_froce: the result has no such quantity; it has .*largest_force"
+NO_SUCH_QUANTITY = r"sweep.yaml:\d+: sweep.quantities.largest_froce: the result has no such quantity; it has .*largest_force"
 
 
 @pytest.mark.parametrize(
