@@ -265,10 +265,8 @@ def in_words(problem: Problem, place: Place) -> str:
 
 def case_error(problems: Sequence[Problem], place: Place) -> CaseError:
     """One error with a line for each problem, in the order of the file."""
-    lines = []
-    for problem in sorted(problems, key=lambda problem: problem.line)[: MOST_PROBLEMS + 1]:
-        lines.append(in_words(replace(problem, message=one_line(problem.message, LONGEST_MESSAGE)), place))
-    distinct = list(dict.fromkeys(lines))
-    if len(problems) > MOST_PROBLEMS:
-        distinct = [*distinct[:MOST_PROBLEMS], f"and {len(problems) - MOST_PROBLEMS} more faults"]
-    return CaseError("\n".join(distinct))
+    short = [replace(one, message=one_line(one.message, LONGEST_MESSAGE)) for one in sorted(problems, key=lambda one: one.line)]
+    lines = list(dict.fromkeys(in_words(problem, place) for problem in short))
+    if (more := len(lines) - MOST_PROBLEMS) > 0:
+        lines[MOST_PROBLEMS:] = [f"and {more} more fault{'s' if more > 1 else ''}"]
+    return CaseError("\n".join(lines))

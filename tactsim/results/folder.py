@@ -195,7 +195,7 @@ def claimed(directory: str | Path, *, replace: bool = False) -> Iterator[OutputF
     path = Path(directory)
     path = path if path.name not in ("", "..") else Path(os.path.abspath(path))
     folder = OutputFolder(path, replace)
-    with only_one(path, f"the output folder {path} is in use by another run; wait for it or choose another folder"):
+    with only_one(path, f"the output folder {one_line(path)} is in use by another run; wait for it or choose another folder"):
         try:
             refuse_within_data_set(path)
             folder.recover()

@@ -8,6 +8,7 @@ from typing import Self
 
 from pydantic import Field, model_validator
 
+from tactsim.errors import InputError
 from tactsim.model import FrozenModel
 
 Override = str | int | float | bool | dict[str, str | int | float | bool | dict[str, str]]
@@ -70,6 +71,18 @@ class RunOutcome(FrozenModel):
     def converged(self) -> bool:
         """Whether its numbers count."""
         return self.status == "converged"
+
+    def value(self, quantity: str) -> float:
+        """A quantity of the run in SI.
+
+        Raises
+        ------
+        InputError
+            If the run did not converge or has no such quantity.
+        """
+        if not self.converged or quantity not in self.quantities:
+            raise InputError(f"the run {self.id} has no {quantity}: {self.reason}")
+        return self.quantities[quantity]
 
 
 def overrides(values: Mapping[str, Override]) -> tuple[str, ...]:

@@ -10,6 +10,8 @@ import numpy as np
 import pretence
 import pytest
 
+from tactsim.case.loading import MOST_PROBLEMS, case_error
+from tactsim.case.yaml_reading import Problem
 from tactsim.cli import main
 from tactsim.interfaces.run import Course
 from tactsim.storage.own_files import MANIFEST
@@ -68,6 +70,12 @@ def test_thousands_of_faults_are_counted(case_file: Path, capsys: pytest.Capture
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == 21
     assert lines[-1] == "and 8980 more faults"
+
+
+def test_faults_are_counted_as_often_as_they_are_told() -> None:
+    faults = [Problem(("key", k // 2), k // 2, "wrong") for k in range(2 * (MOST_PROBLEMS + 1))]
+    *told, last = str(case_error(faults, lambda problem: f"line {problem.line}")).splitlines()
+    assert (len(told), last) == (MOST_PROBLEMS, "and 1 more fault")
 
 
 def test_warnings_of_libraries_are_those_of_the_run(

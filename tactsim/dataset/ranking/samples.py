@@ -40,6 +40,7 @@ LEAST_NOISE = 1e-9
 """Of a reading over the largest: below it is round-off."""
 JAW_KEYS = (("upper",), ("lower",))
 """Where a case describes its jaws."""
+TISSUE = ("block", "tissue")
 SHARED = (("block",), ("matrix",))
 """Where it describes what all samples and the reference share."""
 SENSED = (("readout",), ("time",))
@@ -154,12 +155,7 @@ def judged_samples(
     refuse_reopened(experiment, Path(store).name)
     plain = PlainGrasp.of_results(reference)
     check_all_same(sweep, data, experiment, plain.readings, Path(store).name)
-    if of_jaws := [place.key for place in sweep.places if place.path[1:2] in JAW_KEYS]:
-        words = "varies among the samples, not in the reference: what it changes in the readings is taken for lumps"
-        notes: Sequence[str] = (f"{' and '.join(of_jaws)} {words}",)
-    else:
-        notes = jaw_notes(untouched_scene(experiment), plain.scene)
-    for note in notes:
+    for note in _unlike_reference(sweep, experiment, plain):
         warnings.warn(note, stacklevel=2)
     forces = np.asarray(data[source].values[:, -1], dtype=float)
     truths = _truths(data, float(experiment.block.size[2]))
@@ -174,6 +170,17 @@ def judged_samples(
     given = noise if noise is not None else 0.0 if sensing else ROUNDING_NOISE
     cases = tuple(map(str, data["case_id"].values))
     return JudgedSamples(truths, forces, plain, source, np.hypot(electronic, given), electronic, sensing, cases)
+
+
+def _unlike_reference(sweep: Sweep, experiment: Grasp, plain: PlainGrasp) -> list[str]:
+    """What an estimator would take for lumps: jaws unlike those of the reference, and jaws or tissue that vary."""
+    of_jaws = [place.key for place in sweep.places if place.path[1:2] in JAW_KEYS]
+    varied = of_jaws + [place.key for place in sweep.places if place.path[1:3] == TISSUE]
+    notes = [] if of_jaws else list(jaw_notes(untouched_scene(experiment), plain.scene))
+    if varied:
+        words = "varies among the samples, not in the reference: what it changes in the readings is taken for lumps"
+        notes.append(f"{' and '.join(varied)} {words}")
+    return notes
 
 
 def _sensing(sweep: Sweep, data: xarray.Dataset, experiment: Grasp, name: str) -> tuple[Sensing, ...]:

@@ -81,6 +81,7 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
             remove_leftover(target)
         if os.path.lexists(target):
             raise StorageError(f"{one_line(target)} exists; choose another place with --to")
+        split = split if split is None or isinstance(split, str) else list(split)  # read more than once
         data = load(store, split=split)
         if not data.sizes["sample"]:
             raise InputError(f"{one_line(store)} has no sample that is done{f' in {split}' if split else ''}")

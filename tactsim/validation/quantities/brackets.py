@@ -27,7 +27,7 @@ def _readings(outcome: RunOutcome, quantity: str, area: Area = "both") -> list[f
     Source: the annular area is what turns the pressures of Table 3.3 into its forces; "total area, on the larger sensor" in 3.2
     may mean the disc.
     """
-    value = outcome.quantities[quantity]
+    value = outcome.value(quantity)
     if quantity != "threshold_pressure":
         return [value]
     over_disc = value * outcome.disc_share
@@ -99,7 +99,7 @@ def threshold_spread(
         If there is no such study or run, or the run did not converge.
     """
     values = bracket(inputs, studies, "threshold_pressure", "annulus")
-    over = inputs.converged(study, run).quantities["threshold_pressure"]
+    over = inputs.converged(study, run).value("threshold_pressure")
     return (values.low if end == "lowest" else values.high) / over
 
 

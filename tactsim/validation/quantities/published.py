@@ -70,10 +70,8 @@ def printed_beside_quantities(
         If there is no such run, or it did not converge or has no such quantity.
     """
     outcome = inputs.converged(study, run)
-    if missing := [one.quantity for one in printed if one.quantity not in outcome.quantities]:
-        raise InputError(f"{study}, {run} has no {missing[0]}")
     x, y = _points(printed, x_unit, unit)
-    computed = series("computed", x, np.array([outcome.quantities[one.quantity] for one in printed]))
+    computed = series("computed", x, np.array([outcome.value(one.quantity) for one in printed]))
     return curves_figure(title, x_axis, x_unit, [panel(y_axis, unit, [computed, series("printed", x, y, "points")])])
 
 
@@ -116,9 +114,7 @@ def bonded_disc_ratios(inputs: Inputs, title: Title, bonded: StudyName, smooth: 
         If a run is missing, or did not converge.
     """
     names = [outcome.id for outcome in inputs.study(bonded)]
-    forces = {
-        study: np.array([inputs.converged(study, name).quantities["force"] for name in names]) for study in (bonded, smooth)
-    }
+    forces = {study: np.array([inputs.converged(study, name).value("force") for name in names]) for study in (bonded, smooth)}
     nu = np.linspace(0, 0.4999, RATIOS_DRAWN)
     exact = (1 - nu) * np.log(3 - 4 * nu) / (1 - 2 * nu)
     computed = series("computed", np.array([float(name) for name in names]), forces[bonded] / forces[smooth], "points")

@@ -26,10 +26,7 @@ ClosedForm = Literal["half_space", "layer"]
 
 def _value(inputs: Inputs, run: StudyAndRun, quantity: str) -> float:
     """A quantity of a run in SI."""
-    outcome = inputs.run(*run)
-    if not outcome.converged or quantity not in outcome.quantities:
-        raise InputError(f"{', '.join(run)} has no {quantity}: {outcome.reason}")
-    return outcome.quantities[quantity]
+    return inputs.run(*run).value(quantity)
 
 
 @quantity(unit=lambda si_unit: si_unit)

@@ -86,11 +86,20 @@ def test_a_reference_with_a_lump_is_warned_of(tmp_path: Path, plain: str) -> Non
         PlainGrasp.of_results([str(tmp_path / "lump")])
 
 
-def test_jaws_that_vary_among_the_samples_are_warned_of(tmp_path: Path, plain: str) -> None:
+@pytest.mark.parametrize(
+    ("key", "before", "after"),
+    [
+        (r"experiment\.upper\.tilt_x", "  matrix:", "  upper: {tilt_x: {uniform: [-1 deg, 1 deg]}}\n  matrix:"),
+        (r"experiment\.block\.tissue\.c10", "tissue: icf_stable", "tissue: {kind: neo_hookean, c10: {uniform: [2 kPa, 4 kPa]}}"),
+    ],
+)
+def test_jaws_and_tissue_that_vary_among_the_samples_are_warned_of(
+    key: str, before: str, after: str, tmp_path: Path, plain: str
+) -> None:
     """Lumps were located twice as badly on jaws that lean, and nothing said why."""
-    jaw = "  upper: {tilt_x: {uniform: [-1 deg, 1 deg]}}\n  matrix:"
-    place = made_store(tmp_path, response(), text=TEXT.replace("  matrix:", jaw, 1))
-    with pytest.warns(UserWarning, match=r"^experiment\.upper\.tilt_x varies among the samples, not in the reference"):
+    assert before in TEXT
+    place = made_store(tmp_path, response(), text=TEXT.replace(before, after, 1))
+    with pytest.warns(UserWarning, match=rf"^{key} varies among the samples, not in the reference"):
         judged_samples(place, [plain], source="taxel_force")
 
 

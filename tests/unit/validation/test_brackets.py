@@ -47,6 +47,11 @@ def test_another_run_than_the_lowest_is_refused_and_the_lowest_named() -> None:
         lowest_pressure(INPUTS, BOTH, "wide", "thinn", "disc")
 
 
+def test_a_run_without_the_quantity_is_named() -> None:
+    with pytest.raises(InputError, match="the run default has no threshold_displacement: collapsed"):
+        bracket(INPUTS, ("wide",), "threshold_displacement")
+
+
 def test_a_spread_is_over_the_run_that_is_named() -> None:
     ends = [threshold_spread(INPUTS, BOTH, "wide", "default", end=end) for end in ("lowest", "highest")]  # type: ignore[arg-type]
     assert ends == pytest.approx([0.5, 1.0], rel=1e-12)
