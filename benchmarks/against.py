@@ -58,7 +58,7 @@ JOBS = {
     "annulus_icf": Job(_run("annulus_icf"), 5.0),
     "grasp_lump_icf": Job(_run("grasp_lump_icf"), 5.0, without_figures=True),
     "atrial_annulus": Job(_run("atrial_annulus"), 15.0),
-    # With twenty, the seconds that processes take to begin would be a quarter of its time, and they are nothing of an hour.
+    # So many that the seconds in which processes begin hardly count.
     "sweep_lumps": _sweep("sweep_lumps", 40, 4000.0, STANDARD_OPTIONS),
     # At the base many of its meshes are tetrahedra, and a turn takes many minutes.
     "sweep_classes": _sweep("sweep_classes", 20, 1000.0, most_repeats=1),
