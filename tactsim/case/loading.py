@@ -23,7 +23,7 @@ from tactsim.errors import CaseError, InputError, StorageError, UnknownName, sho
 from tactsim.interfaces import Experiment
 from tactsim.model import plain
 from tactsim.outside.files import LIMITS, TooLarge, Unreadable, named_path, opened
-from tactsim.outside.text import one_line
+from tactsim.outside.text import counted, one_line
 from tactsim.refusals import as_written
 from tactsim.registry import kind_names
 from tactsim.schema_of_model import value_at
@@ -268,5 +268,5 @@ def case_error(problems: Sequence[Problem], place: Place) -> CaseError:
     short = [replace(one, message=one_line(one.message, LONGEST_MESSAGE)) for one in sorted(problems, key=lambda one: one.line)]
     lines = list(dict.fromkeys(in_words(problem, place) for problem in short))
     if (more := len(lines) - MOST_PROBLEMS) > 0:
-        lines[MOST_PROBLEMS:] = [f"and {more} more fault{'s' if more > 1 else ''}"]
+        lines[MOST_PROBLEMS:] = [f"and {counted(more, 'more fault')}"]
     return CaseError("\n".join(lines))

@@ -157,11 +157,14 @@ class ContactPair:
         gap, normal, hessian = self.body.signed_distance(points)
         pressure = np.maximum(0.0, state.multiplier - self.penalty * gap)
         trial, _ = self._elastic_trial(points, normal, hessian, state)
-        limit = np.where(pressure > 0, self.traction_limit(pressure), 0.0)
-        size = np.linalg.norm(trial, axis=0)
-        scale = np.where(size > limit, limit / np.where(size > 0, size, 1.0), 1.0)
         none = np.zeros((len(points), *points.shape))
-        return ContactTraction(gap, pressure, scale * trial, normal, points, none, none)
+        return ContactTraction(gap, pressure, self.within_limit(trial, pressure), normal, points, none, none)
+
+    def within_limit(self, tangential: Array, pressure: Array) -> Array:
+        """Tangential traction (d, n) in Pa, cut back to its limit under pressures (n,) in Pa."""
+        limit = np.where(pressure > 0, self.traction_limit(pressure), 0.0)
+        size = np.linalg.norm(tangential, axis=0)
+        return np.where(size > limit, limit / np.where(size > 0, size, 1.0), 1.0) * tangential
 
     def linearised(self, points: Array, state: ContactState, iterate: ContactIterate) -> ContactTraction:
         """Traction and derivative at points (d, n), each point open, sticking or slipping as the iterate decides.

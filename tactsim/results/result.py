@@ -262,7 +262,7 @@ class Result:
         if isinstance(self.scene, model):
             return self.scene
         if isinstance(self.scene, UnreadableScene):
-            raise StorageError(f"the scene of the result cannot be read: {self.scene.reason}; {self.scene.remedy}")
+            raise StorageError(self.scene.in_words)
         raise InputError(f"the result of {shown(self.kind)} holds no {model.__name__}")
 
 

@@ -67,6 +67,11 @@ class UnreadableScene:
     reason: str
     remedy: str = "run the case again"
 
+    @property
+    def in_words(self) -> str:
+        """That it cannot be read, why, and what to do."""
+        return f"the scene of the result cannot be read: {self.reason}; {self.remedy}"
+
 
 def read_scene(kind: str, described: Any) -> Scene | UnreadableScene | None:
     """The scene of an experiment of a kind, from the mapping that `written_scene` made; None from None."""

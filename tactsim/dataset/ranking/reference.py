@@ -59,11 +59,12 @@ class PlainGrasp:
         readings = [readings_of(result, noise=0.0) for result in results]
         for result in results:
             warn_of_inclusions(result)
-        histories, last = [(over_time(result, "displacement"), jaws_over_time(result, TAXEL_FORCE)) for result in results], 0
+        histories = [(over_time(result, "displacement"), jaws_over_time(result, TAXEL_FORCE)) for result in results]
+        order = [0]
         if len(folders) > 1:
             histories = [(closings[-1:], forces[-1:]) for closings, forces in histories]
-            order = np.argsort([closings[-1] for closings, _ in histories])
-            histories, readings, last = [histories[k] for k in order], [readings[k] for k in order], int(order[-1])
+            order = np.argsort([closings[-1] for closings, _ in histories]).tolist()
+            histories, readings = [histories[k] for k in order], [readings[k] for k in order]
         for other in readings[:-1]:
             check_same(other.block_size, other.layout, readings[-1], "one reference")
         closings, forces = (np.concatenate(parts) for parts in zip(*histories, strict=True))
@@ -74,7 +75,7 @@ class PlainGrasp:
                 "several steps (time: {steps: 12}), or several results"
             )
         begun = np.concatenate([[0.0], closings]), np.concatenate([np.zeros_like(forces[:1]), forces])
-        return cls(*begun, readings[-1], results[last].scene_as(GraspScene), folders[last])
+        return cls(*begun, readings[-1], results[order[-1]].scene_as(GraspScene), folders[order[-1]])
 
     def at(self, closing: Array | float) -> Array:
         """Forces (..., jaw, row, column) in N at closings in m, by monotone cubic interpolation.

@@ -41,6 +41,7 @@ LEAST_NOISE = 1e-9
 JAW_KEYS = (("upper",), ("lower",))
 """Where a case describes its jaws."""
 TISSUE = ("block", "tissue")
+"""Where it describes the tissue."""
 SHARED = (("block",), ("matrix",))
 """Where it describes what all samples and the reference share."""
 SENSED = (("readout",), ("time",))

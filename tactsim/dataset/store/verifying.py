@@ -127,8 +127,8 @@ def _remove_unreadable(store: Store, variables: Sequence[Variable], status: Arra
     """Removes chunks that cannot be read and hold no computed sample by the status (samples,): a machine that lost its power
     left them half written, and the journal still has what they should hold."""
     per_chunk = store.described["status"].chunks[0]
-    computed = set(np.unique(np.flatnonzero(status != PENDING) // per_chunk).tolist())
-    for number in sorted(set(range(-(-len(status) // per_chunk))) - computed):
+    chunk = np.arange(len(status)) // per_chunk
+    for number in np.setdiff1d(chunk, chunk[status != PENDING]).tolist():
         for variable in variables:
             try:
                 store.read(variable.name, slice(number * per_chunk, (number + 1) * per_chunk))

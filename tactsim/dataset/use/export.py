@@ -16,7 +16,7 @@ from tactsim.array import Array
 from tactsim.dataset.store.arrays import FAILED, refuse_link
 from tactsim.dataset.store.files import CARD, FIGURES
 from tactsim.dataset.store.opening import Store
-from tactsim.dataset.use.loading import load, split_names
+from tactsim.dataset.use.loading import load, names_in, split_names
 from tactsim.errors import InputError, StorageError, TactsimError
 from tactsim.outside.extras import extras_named
 from tactsim.outside.files import opened
@@ -81,16 +81,17 @@ def exported(store: str | Path, place: str | Path, *, split: str | Iterable[str]
             remove_leftover(target)
         if os.path.lexists(target):
             raise StorageError(f"{one_line(target)} exists; choose another place with --to")
-        split = split if split is None or isinstance(split, str) else list(split)  # read more than once
-        data = load(store, split=split)
+        parts = None if split is None else names_in(split, "split")
+        data = load(store, split=parts)
         if not data.sizes["sample"]:
-            raise InputError(f"{one_line(store)} has no sample that is done{f' in {split}' if split else ''}")
+            named = f" in {', '.join(parts)}" if parts else ""
+            raise InputError(f"{one_line(store)} has no sample that is done{named}")
         with built_beside(target) as waiting, naming(target):
             if target.suffix in HDF5:
-                _hdf5_apart(store, split, waiting, target)
+                _hdf5_apart(store, parts, waiting, target)
             else:
-                _shards(data, Store.open(store).attributes | {"failed": _failed(store, split)}, waiting)
-                if card := _card(Path(store), data, split, OF_SHARDS):
+                _shards(data, Store.open(store).attributes | {"failed": _failed(store, parts)}, waiting)
+                if card := _card(Path(store), data, parts, OF_SHARDS):
                     write_bytes(waiting / CARD, card.encode())
                     _copy_figures(Path(store), waiting)
     return int(data.sizes["sample"])
@@ -101,14 +102,14 @@ def _refuse_inside(target: Path, store: Path) -> None:
         raise StorageError(f"{one_line(target)} lies in the data set itself; choose another place with --to")
 
 
-def _card(store: Path, data: xarray.Dataset, split: str | Iterable[str] | None, reading: tuple[str, ...]) -> str:
+def _card(store: Path, data: xarray.Dataset, split: list[str] | None, reading: tuple[str, ...]) -> str:
     """The card of a store with what was exported of it and how that is read before its sections; empty if the store has none."""
     path = store / CARD
     if not os.path.lexists(path):
         return ""
     refuse_link(path)
     head, mark, rest = opened(path, "description").text().partition("\n## ")
-    parts = "all splits" if split is None else "the split " + (split if isinstance(split, str) else ", ".join(split))
+    parts = "all splits" if split is None else f"the split {', '.join(split)}"
     count = f"{data.sizes['sample']} samples that are done, of {parts}."
     name = max(
         _arrays(data), key=lambda one: (data[one].attrs["role"] == "reading", data[one].attrs["units"] == "N", data[one].size)
@@ -137,7 +138,7 @@ def _labels(data: xarray.Dataset) -> dict[str, Array]:
     return {str(name): values.values for name, values in data.coords.items() if name != "sample"}
 
 
-def _failed(store: str | Path, split: str | Iterable[str] | None) -> list[dict[str, Any]]:
+def _failed(store: str | Path, split: list[str] | None) -> list[dict[str, Any]]:
     """Number and reason of every sample that failed."""
     whole = load(store, split=split, failed=True)
     failed = whole.isel(sample=whole["status"].values == FAILED)
@@ -145,12 +146,11 @@ def _failed(store: str | Path, split: str | Iterable[str] | None) -> list[dict[s
     return [{"sample": int(sample), "reason": str(reason)} for sample, reason in pairs]
 
 
-def _hdf5_apart(store: str | Path, split: str | Iterable[str] | None, waiting: Path, target: Path) -> None:
+def _hdf5_apart(store: str | Path, split: list[str] | None, waiting: Path, target: Path) -> None:
     """Writes HDF5 in a child process: on a full disk the library ends the process that it runs in."""
     if importlib.util.find_spec("h5py") is None:
         raise InputError("HDF5 needs h5py; install it with: pip install 'tactsim[export]'")
-    names = None if split is None else [split] if isinstance(split, str) else list(split)
-    arguments = [str(Path(store).absolute()), str(waiting.absolute()), json.dumps(names)]
+    arguments = [str(Path(store).absolute()), str(waiting.absolute()), json.dumps(split)]
     done = run_child(MODULE, arguments, time_limit=LONGEST)
     if done.out_of_time:
         raise StorageError(f"cannot write {one_line(target)}: it took longer than {LONGEST:g} s")

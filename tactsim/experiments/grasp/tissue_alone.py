@@ -21,11 +21,9 @@ from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.regularisation import regularisation
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.time_settings import GraspTimeSettings
-from tactsim.fem.assembly.space import FACET_POINTS
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.mechanics.contact.contact_equilibrium import ContactEquilibrium
 from tactsim.mechanics.contact.posed_contact import PosedContact
-from tactsim.mechanics.models.block_model import GraspModel
 from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mechanics.models.first_guess import FIRST_PART
 from tactsim.mechanics.paths.loading import close
@@ -70,14 +68,13 @@ class TissueAlone:
     @staticmethod
     def _expecting(contact: PosedContact, forces: _OnFace, closing: float) -> PosedContact:
         """A contact of an undeformed body with the forces on the points under the jaw, within the limit of its own law."""
-        face = np.broadcast_to(contact.pair.friction_mask > 0, contact.reference.shape[1])
+        face = _under_jaw(contact)
         pressure, tangential = np.zeros(len(face)), np.zeros_like(contact.reference)
         tractions = closing * forces(contact.reference[:2, face].T)
         pressure[face], tangential[:, face] = np.maximum(tractions[:, 0], 0.0), tractions[:, 1:].T
         normals = contact.state.normals
         tangential -= np.einsum("in,in->n", tangential, normals) * normals
-        size, limit = np.linalg.norm(tangential, axis=0), contact.pair.traction_limit(pressure)
-        tangential *= np.minimum(1.0, limit / np.maximum(size, np.finfo(float).tiny))
+        tangential = contact.pair.within_limit(tangential, pressure)
         return replace(contact, growth=ContactIterate(pressure / closing, tangential / closing), grown_over=closing)
 
 
@@ -150,7 +147,7 @@ def _solved(alone: _Alone) -> TissueAlone | None:
     except (ConvergenceError, Collapsed):
         return None
     displacement = model.space.split(state.unknowns)[0] / closing
-    forces = {side: _face_forces(model, side, contact, closing) for side, contact in zip(JAWS, state.contacts, strict=True)}
+    forces = {side: _face_forces(contact, closing) for side, contact in zip(JAWS, state.contacts, strict=True)}
     return TissueAlone(_between_nodes(model.mesh.nodes, displacement), forces)
 
 
@@ -163,8 +160,13 @@ def _between_nodes(nodes: Array, values: Array) -> RegularGridInterpolator:
     return RegularGridInterpolator([size * line for line in lines], on_grid, bounds_error=False, fill_value=None)
 
 
-def _face_forces(model: GraspModel, side: str, contact: PosedContact, closing: float) -> _OnFace:
+def _under_jaw(contact: PosedContact) -> Array:
+    """Whether surface points (n,) lie on the face under the jaw, not on those beside it."""
+    return np.asarray(contact.pair.friction_mask) > 0
+
+
+def _face_forces(contact: PosedContact, closing: float) -> _OnFace:
     """What presses the face under a jaw, per closing in m."""
-    face = slice(len(model.facets[side]) * len(FACET_POINTS))
+    face = _under_jaw(contact)
     values = np.vstack([contact.state.pressure, contact.state.tangential]) / closing
     return _OnFace.of(contact.reference[:2, face].T, values[:, face].T)

@@ -46,9 +46,7 @@ def stored_grasp(folder: str) -> Result:
     """
     result = read_basis(folder).result
     if isinstance(result.scene, UnreadableScene):
-        raise StorageError(
-            f"{one_line(folder)}: the scene of the result cannot be read: {result.scene.reason}; {result.scene.remedy}"
-        )
+        raise StorageError(f"{one_line(folder)}: {result.scene.in_words}")
     if not isinstance(result.scene, GraspScene) or not has_taxels(result, TAXEL_FORCE):
         raise InputError(
             f"{folder} holds the result of {result.kind} without forces of taxels; needed: a grasp or a matrix_readout with steps"
