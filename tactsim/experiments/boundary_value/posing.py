@@ -41,7 +41,7 @@ SOFTNESS = 2.5e-3
 WIDEST = 1e-2
 """Penetration at which a state that Newton does not find at once is approached, over the body's size: with it Newton finds
 round bodies on coarse cells from far away, and from there to a tenth of it hardly a point opens or closes."""
-EXACT_STEPS = NewtonOptions(largest_inexactness=1e-9)
+EXACT_STEPS = NewtonOptions(largest_inexactness=1e-9, last_inexactness=1e-9)
 """Of bodies without contact under a pressure that follows their faces. As a tension it makes a free face unstable, so that
 uneven equilibria are near, and what an inexact step leaves leads to them: a uniform cube became uneven in its first step. Dead
 loads do not; a block of 73 000 unknowns under one takes two thirds of the time with inexact steps."""

@@ -25,9 +25,6 @@ from tactsim.fem.threads import one_vector_thread
 CYCLE_AFTER = 6
 CYCLE_RATIO = 0.9
 """A residual above this part of the smallest of the four before it, from iteration ``CYCLE_AFTER`` on, is part of a cycle."""
-FORCING = 0.5
-"""Error of a linear step over its size, over the residual that it starts from. In proportion to the residual it leaves Newton
-quadratic (Dembo, Eisenstat & Steihaug 1982, doi:10.1137/0719025). Direct solvers are exact anyway."""
 LARGEST_GROWTH, DISTORTED = 4.0, 0.75
 """A step that multiplies the unbalanced forces by more, and leaves less than this part of the smallest J or more than its inverse
 of the largest, has gone astray and is halved. Forces alone do not say so: where points of a contact change their state, they may
@@ -45,8 +42,6 @@ CONTRACTION = 0.3
 MOST_FURTHER = 5.0
 """A new tangent and factor cost as much as so many steps with an old one, in sections of 8 000 and of 32 000 unknowns: where
 the last contraction promises more of them, a new one is made."""
-SHARE_OF_TOLERANCE = 0.1
-"""Part of Newton's tolerance that the error of the last linear step may leave."""
 
 
 class Problem:
@@ -237,10 +232,9 @@ class _Solution:
 
     def _linear_step(self, state: NewtonState, now: Sequence[LinearisedContact]) -> NewtonStep:
         """Newton's step of the unknowns, and of the rigid displacement of the interfaces under load control."""
-        needed = SHARE_OF_TOLERANCE * self._goal / state.residual
-        finest = finest_step(self._solver)
-        accuracy = max(min(max(FORCING * state.residual, needed), self._options.largest_inexactness), finest)
         body, interfaces, control = self._body, self._forces.interfaces, self._forces.load_control
+        allowed = self._options.inexactness(state.residual, self._goal, bordered=control is not None)
+        accuracy = max(allowed, finest_step(self._solver))
         constraints, solver = self._balance.constraints, self._solver
         data = body.tangent(state.unknowns, state.kinematics)
         for interface, force in zip(interfaces, now, strict=True):

@@ -161,8 +161,9 @@ class UpperHalf:
     @classmethod
     def of(cls, matrix: csr_matrix) -> UpperHalf:
         """That of matrices of the pattern of this one."""
-        rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
-        numbered = csr_matrix((np.arange(matrix.nnz), matrix.indices, matrix.indptr), matrix.shape)
+        small = matrix.indices.dtype
+        rows = np.repeat(np.arange(matrix.shape[0], dtype=small), np.diff(matrix.indptr))
+        numbered = csr_matrix((np.arange(matrix.nnz, dtype=small), matrix.indices, matrix.indptr), matrix.shape)
         upper = np.flatnonzero(matrix.indices >= rows)
         return cls(upper, numbered.T.tocsr().data[upper], rows[upper], matrix.indices[upper])
 

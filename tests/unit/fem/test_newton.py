@@ -11,6 +11,7 @@ from solids import body_of, box, facets_where, held, on_plane
 
 from tactsim.deadline import time_limit
 from tactsim.errors import ConvergenceError, OutOfTime
+from tactsim.experiments.boundary_value.posing import EXACT_STEPS
 from tactsim.fem.assembly.body import Body
 from tactsim.fem.assembly.dead_load import DeadLoad
 from tactsim.fem.assembly.pressure import FollowerPressure
@@ -21,7 +22,7 @@ from tactsim.fem.equilibrium.balance import ExternalForces
 from tactsim.fem.equilibrium.newton import Problem
 from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.fem.equilibrium.newton_step import NewtonStep
-from tactsim.fem.solvers.linear import direct_solver
+from tactsim.fem.solvers.linear import IterativeSolver, direct_solver
 from tactsim.materials.linear_elastic import LinearElastic
 from tactsim.materials.mooney_rivlin_2 import MooneyRivlin2
 
@@ -257,3 +258,44 @@ def test_a_factor_that_failed_polishes_no_later_solution(monkeypatch):
         with pytest.raises(ConvergenceError, match="a zero pivot"):
             problem.solve(zero, loads=[DeadLoad(force)])
     assert problem.solve(solved.unknowns, loads=[DeadLoad(1.01 * force)]).history[-1] < NewtonOptions().tolerance
+
+
+class AsWrongAsAllowed(IterativeSolver):
+    """Solves exactly, then adds the error that Newton allows, all on one unknown's side; keeps what it was asked for."""
+
+    name = "as wrong as allowed"
+
+    def __init__(self):
+        self._direct, self.asked = direct_solver("superlu"), []
+
+    def factor(self, system):
+        self._matrix = system.matrix
+        self._direct.factor(system.matrix)
+
+    def solve(self, right, accuracy=0.0):
+        self.asked.append(accuracy)
+        wrong = np.where(np.arange(len(right)) % 2, right, -right)
+        wrong *= accuracy * np.linalg.norm(right) / max(np.linalg.norm(wrong), 1e-300)
+        return self._direct.solve(right + wrong)
+
+    def close(self):
+        self._direct.close()
+
+
+@pytest.mark.parametrize("goal", [4.5e-2, 1e-3, 1e-6])
+def test_the_last_linear_step_is_as_exact_as_the_goal_needs_and_newton_ends_there(goal):
+    body, fixed, force = block(2, MATERIALS["incompressible"], held_axes=range(2))
+    solver = AsWrongAsAllowed()
+    problem = Problem(body, fixed, solver=solver, options=NewtonOptions(tolerance=goal))
+    solved = problem.solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
+    assert solved.history[-1] < goal
+    for residual, asked in zip(solved.history, solver.asked, strict=False):
+        assert asked * residual <= max(0.1 * goal, min(0.5 * residual**2, 0.01 * residual)) * (1 + 1e-12)
+    last = solved.history[-2]
+    assert solver.asked[-1] >= min(0.05, 0.1 * goal / last)
+
+
+def test_steps_that_are_to_be_exact_are_so_at_the_end_too():
+    asked = [EXACT_STEPS.inexactness(residual, 1e-3) for residual in (1.0, 1e-2, 2e-3)]
+    assert asked == [1e-9] * 3
+    assert NewtonOptions().inexactness(2e-3, 1e-3) == 0.05
