@@ -236,8 +236,9 @@ def _kind_problems(document: Document) -> list[Problem]:
 
 def _blamed_file(document: Document, message: str) -> Problem:
     """A file that cannot be read, at the key that names it."""
-    named = (key for key in document.lines if key[-1:] == ("path",) and str(value_at(document.value, key)) in message)
-    key = next(named, ("experiment",))
+    paths = {key: str(value_at(document.value, key)) for key in document.lines if key[-1:] == ("path",)}
+    named = [key for key, path in paths.items() if path in message]
+    key = max(named, key=lambda one: len(paths[one]), default=("experiment",))  # one path may be part of another
     return Problem(key, document.line(key), message)
 
 

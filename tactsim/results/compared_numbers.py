@@ -14,8 +14,12 @@ from tactsim.units import compact_unit, conversion
 
 FROM_FIRST = "largest difference of "
 """Beginning of the name of a column of how far an array is from that of the first result."""
+ONE_SIDED = "numbers on one side of "
+"""Beginning of the name of a column of how many numbers only an array has, or only that of the first result."""
 LARGEST = "largest "
 """Beginning of the name of a column of the largest value of an array, whatever its sign."""
+OF_ARRAYS = (FROM_FIRST, ONE_SIDED, LARGEST)
+"""What the names of columns of arrays begin with."""
 CLOSE = 1e-9
 """Relative distance of two values along an axis, such as times, that are the same."""
 
@@ -40,7 +44,7 @@ class Column:
     def differs(self) -> bool:
         """Whether five digits tell the results apart, by more than round-off; an array that one does not have tells nothing."""
         numbers = [value for value in self.values if value is not None]
-        if self.name.startswith(FROM_FIRST):
+        if self.name.startswith((FROM_FIRST, ONE_SIDED)):
             return any(numbers)
         if self.name.startswith(LARGEST) or len(numbers) == len(self.values):
             return len(set(map(shown_number, numbers))) > 1 and not max(numbers) - min(numbers) <= self.round_off
@@ -82,7 +86,17 @@ def _of_array(name: str, first: Quantity, results: Sequence[Result | None], size
         limit = ROUND_OFF * max([*(peak for peak in peaks if peak), _size_of(first.unit, sizes)])
         far = [0.0 if one is not None and one <= limit else one for one in far]
         columns.append(_column(f"{FROM_FIRST}{name}", first, far, sizes))
+    alone = [None if gap is None else _one_sided(held[0], one) for gap, one in zip(apart, held, strict=True)]
+    if any(alone):
+        columns.append(Column(f"{ONE_SIDED}{name}", "", first.description, tuple(alone)))
     return columns
+
+
+def _one_sided(first: Quantity | None, other: Quantity | None) -> float | None:
+    """At how many places only one of two arrays of one shape has a number; None if one is not there."""
+    if first is None or other is None:
+        return None
+    return float(np.count_nonzero(np.isfinite(first.numbers) != np.isfinite(other.numbers)))
 
 
 def difference(first: Quantity | None, other: Quantity | None) -> np.ndarray | None:

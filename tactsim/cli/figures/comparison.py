@@ -20,7 +20,7 @@ from tactsim.mechanics.outcome.contact_history import CONTACT_UNITS
 from tactsim.outside.text import first_names
 from tactsim.plotting.canvas import despined, encoded, entitle, new_figure, scale_of, styled
 from tactsim.results import Result
-from tactsim.results.compared_numbers import FROM_FIRST, LARGEST, Column
+from tactsim.results.compared_numbers import LARGEST, OF_ARRAYS, Column
 from tactsim.results.comparison import Comparison
 
 CURVES = (("displacement", "reaction_force"), ("displacement", "force"), ("time", "force"))
@@ -97,10 +97,9 @@ def _bars(comparison: Comparison, above_maps: bool) -> list[Column]:
     """The numbers that bars show, of those that two results have: what people ask for first, then those that differ most; what
     tells of the solver last.
     """
-    arrays = (LARGEST, FROM_FIRST)
     shared = [c for c in comparison.columns if sum(value is not None for value in c.values) > 1]
-    wanted = [c for c in shared if c.name in ASKED_FOR and not (above_maps and c.name.startswith(arrays))]
-    others = [c for c in comparison.differing if c in shared and not c.name.startswith(arrays) and c not in wanted]
+    wanted = [c for c in shared if c.name in ASKED_FOR and not (above_maps and c.name.startswith(OF_ARRAYS))]
+    others = [c for c in comparison.differing if c in shared and not c.name.startswith(OF_ARRAYS) and c not in wanted]
     others.sort(key=lambda column: (column.name in OF_THE_SOLVER, -_spread(column)))
     no_solver = [c for c in others if c.name not in OF_THE_SOLVER]
     return [*wanted, *(no_solver if no_solver or wanted else others)][: BARS_ABOVE_MAPS if above_maps else MOST_BARS]

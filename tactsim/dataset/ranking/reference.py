@@ -83,13 +83,14 @@ class PlainGrasp:
         Raises
         ------
         InputError
-            If a closing lies beyond the last of the reference.
+            If a closing is negative, no number, or beyond the last of the reference.
         """
         wanted, most = np.asarray(closing, dtype=float), float(self.closings[-1])
-        if not np.isfinite(wanted).all() or wanted.min() < 0 or wanted.max() > most * (1 + SAME_CLOSING):
-            asked = format_quantity(float(wanted.max()), "m")
+        within = (wanted >= 0) & (wanted <= most * (1 + SAME_CLOSING))
+        if not within.all():
+            refused = format_quantity(float(np.atleast_1d(wanted[~within])[0]), "m")
             raise InputError(
-                f"a sample closes by {asked}, the reference from 0 to {format_quantity(most, 'm')}; "
+                f"a sample closes by {refused}, the reference from 0 to {format_quantity(most, 'm')}; "
                 "needed: a reference that closes at least as far as every sample"
             )
         return scipy.interpolate.PchipInterpolator(self.closings, self.forces, axis=0)(np.minimum(wanted, most))

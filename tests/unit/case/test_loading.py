@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import os
+import shutil
 from pathlib import Path
 
 import pytest
@@ -12,6 +14,7 @@ from tactsim.case import Case, load_case
 from tactsim.case.yaml_reading import read_yaml
 from tactsim.errors import CaseError, StorageError
 from tactsim.outside.files import LIMITS
+from tactsim.shipped import CASES
 
 
 def refused(path: Path, text: str, *overrides: str) -> list[str]:
@@ -181,6 +184,19 @@ def test_unreadable_files(tmp_path: Path, pretended: None) -> None:
     for path in (tmp_path, tmp_path / "missing.yaml", tmp_path / "dangling.yaml", tmp_path / ("x" * 4096), "a\0b"):
         with pytest.raises(StorageError, match="cannot read the case file"):
             load_case(path)
+
+
+def test_of_two_files_of_one_name_the_missing_one_is_blamed(tmp_path: Path) -> None:
+    """The path of the one that is there is part of that of the other."""
+    shutil.copy(CASES.parent / "meshes" / "lump.stl", tmp_path)
+    case = read_yaml((CASES / "grasp_stl.yaml").read_text(encoding="utf-8")).value
+    lump = case["experiment"]["inclusions"][0]
+    paths = ("lump.stl", "sub/lump.stl")
+    case["experiment"]["inclusions"] = [lump | {"shape": lump["shape"] | {"path": str(tmp_path / path)}} for path in paths]
+    case["experiment"]["inclusions"][0]["shape"]["path"] = "lump.stl"
+    (tmp_path / "case.json").write_text(json.dumps(case), encoding="utf-8")
+    with pytest.raises(StorageError, match=r"experiment.inclusions.1.shape.path: "):
+        load_case(tmp_path / "case.json")
 
 
 def test_a_data_set_is_no_case_and_its_commands_are_named(tmp_path: Path) -> None:

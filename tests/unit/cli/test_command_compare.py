@@ -289,6 +289,20 @@ def test_arrays_are_compared_by_their_largest_and_round_off_is_no_difference() -
     assert "The largest difference of an array is that from one" in comparison.markdown_text()
 
 
+def test_a_number_beside_none_is_a_difference() -> None:
+    """A taxel that one result has and another has not went unseen, as the largest difference leaves such places out."""
+    results = {
+        "one": grasped(1, [[0.3, 0.4, 0.1]]),
+        "dead": grasped(1, [[0.3, None, 0.1]]),
+        "same": grasped(1, [[0.3, 0.4, 0.1]]),
+    }
+    comparison = compared(results, lambda experiment, path: "")
+    alone = next(column for column in comparison.differing if column.name == "numbers on one side of taxel_force_upper")
+    assert alone.values == (None, 1.0, 0.0)
+    alike = compared({"one": results["dead"], "other": results["dead"]}, lambda experiment, path: "")
+    assert not alike.differing, "None on both sides is the same"
+
+
 def test_every_warning_is_told_once_with_the_results_that_have_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     results = {
         "one": grasped(1, [[1.0]], "too coarse"),

@@ -73,6 +73,9 @@ def test_several_results_are_several_closings(tmp_path: Path) -> None:
     assert [PlainGrasp.of_results(order).folder for order in (folders, folders[::-1])] == [folders[0]] * 2
     assert plain.closings == pytest.approx([0.0, *CLOSINGS])
     assert plain.at(0.8e-3) == pytest.approx(plain_forces(np.array([0.8e-3]))[0])
+    for closings, named in (([0.8e-3, -0.2e-3], "-200 µm"), ([0.8e-3, 5e-3], "5 mm"), ([0.8e-3, np.nan], "nan")):
+        with pytest.raises(InputError, match=f"closes by {named}"):
+            plain.at(np.array(closings))
     with pytest.raises(InputError, match="two or more"):
         PlainGrasp.of_results(folders[:1])
     with pytest.raises(InputError, match="no reference"):

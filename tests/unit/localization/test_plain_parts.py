@@ -83,6 +83,29 @@ def test_a_lump_is_not_held_against_the_reference() -> None:
     assert parts.taxels == 2 * 6  # without the lump's own column of taxels, and the two beside it
 
 
+@pytest.mark.parametrize("wrong", [0.05, -0.05, 0.5])
+def test_a_finding_that_rests_on_one_taxel_is_a_warning_that_names_it(wrong: float) -> None:
+    forces = PLAIN.copy()
+    forces[1, 0, 2] += wrong
+    given = replace(read(forces), response=response())
+    for estimator in (HypothesesEstimator(), ModelBasedEstimator()):
+        words = str(plain_parts_warning(given, estimator.estimate(given)))
+        assert words.startswith("without taxel L1,3 (lower jaw, row 1, column 3) all readings fit the reference")
+    valid = np.ones(forces.shape, bool)
+    valid[1, 0, 2] = False
+    left_out = replace(given, valid=valid)
+    estimate = HypothesesEstimator().estimate(left_out)
+    assert (estimate.present, plain_parts_warning(left_out, estimate)) == (False, None), "as dead it finds nothing"
+
+
+def test_a_lump_rests_on_more_than_one_taxel() -> None:
+    generator = np.random.default_rng(5)
+    for seed in range(60):
+        place, radius = generator.uniform([8e-3, 8e-3, 5e-3], [32e-3, 32e-3, 15e-3]), generator.uniform(2e-3, 5e-3)
+        lump = PLAIN + 3.0 * response().signal(place[None], np.array([radius]))[0]
+        assert "rests on it alone" not in str(plain_parts_warning(read(lump, seed), NOTHING))
+
+
 def test_nothing_is_said_without_a_reference_or_plain_parts() -> None:
     assert plain_parts(Readings(PLAIN, LAYOUT, SIZE), NOTHING) is None
     everywhere = tuple(EstimatedInclusion("unknown", (x, y, 10e-3)) for x in (10e-3, 30e-3) for y in (10e-3, 30e-3))
