@@ -21,8 +21,8 @@ LEAST = 4
 SURE = 0.999
 """Probability with which readings that fit have both parts of their chi-square below the limits."""
 ALONE = 0.2
-"""Largest change of any other taxel, over that of a taxel that changes alone. Of balls drawn within a block of 20 mm between 3 rows
-of 3 taxels of 9 mm one in a hundred falls below it, near the corners; half of them are above 0.38."""
+"""Largest change of any other taxel, over that of a taxel that changes alone. Of balls drawn within a block of 20 mm between 3
+rows of 3 taxels of 9 mm one in a hundred falls below it, near the corners; half of them are above 0.38."""
 
 
 @dataclass(frozen=True)
