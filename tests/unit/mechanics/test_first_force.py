@@ -69,7 +69,8 @@ def leaning() -> Grasp:
             "matrix": {"rows": 2, "columns": 2, "pitch": 8e-3, "size": 7e-3},
             "contact": {"kind": "coulomb", "friction": 0.4},
             "mesh": {"kind": "structured", "cells": [4, 4, 3]},
-            "loading": {"control": "force", "pieces": [{"kind": "ramp", "to": 1.0, "duration": 1.0}]},
+            "loading": {"control": "force", "pieces": [{"kind": "ramp", "to": 0.5, "duration": 1.0}]},
+            "time": {"steps": 1},
         }
     )
 

@@ -41,7 +41,7 @@ def forces_of(result: Result) -> list[float]:
     return [step.values["reaction_force"] for step in result.steps]
 
 
-@pytest.mark.parametrize("friction", [0.3, 1.0])
+@pytest.mark.parametrize("friction", [pytest.param(0.3, marks=pytest.mark.slow), 1.0])
 def test_forces_rise_evenly(friction: float, monkeypatch: pytest.MonkeyPatch) -> None:
     result = grasped(friction)
     assert result.status is Status.CONVERGED

@@ -49,51 +49,53 @@ def nothing_kept() -> Iterator[None]:
     tissue_alone._solved.cache_clear()
 
 
-@pytest.fixture
-def systems(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Sizes of the linear systems that are solved."""
-    solved: list[int] = []
-    take = newton._Solution._linear_step
+class Run:
+    """A grasp that was run: its forces on the taxels and how many of its systems are those of the block with the lump."""
 
-    def counted(self: Any, state: Any, now: Any) -> Any:
-        solved.append(len(state.unknowns))
-        return take(self, state, now)
+    def __init__(self, experiment: ts.Grasp) -> None:
+        sizes: list[int] = []
+        take = newton._Solution._linear_step
 
-    monkeypatch.setattr(newton._Solution, "_linear_step", counted)
-    return solved
+        def counted(solution: Any, state: Any, now: Any) -> Any:
+            sizes.append(len(state.unknowns))
+            return take(solution, state, now)
 
-
-def taxels(result: ts.Result) -> np.ndarray:
-    assert result.status is Status.CONVERGED, result.reason
-    return np.concatenate([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
-
-
-def of_the_lump(systems: list[int]) -> int:
-    """How many of the systems are those of the block with the lump, the largest."""
-    return sum(size == max(systems) for size in systems)
+        with pytest.MonkeyPatch.context() as patched:
+            patched.setattr(newton._Solution, "_linear_step", counted)
+            result = experiment.run()
+        assert result.status is Status.CONVERGED, result.reason
+        self.residual = result.steps[-1].residual
+        self.taxels = np.concatenate([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
+        self.systems = sum(size == max(sizes) for size in sizes)
 
 
-@pytest.mark.parametrize("forces", [1.0, 0.0], ids=["whole", "displacements only"])
-def test_newton_is_led_by_displacements_and_forces_together(
-    forces: float, systems: list[int], monkeypatch: pytest.MonkeyPatch
-) -> None:
-    plain = grasp(guess="compression").run()
-    without = of_the_lump(systems)
-    systems.clear()
+@pytest.fixture(scope="module")
+def compressed() -> Run:
+    """The grasp without the guess."""
+    return Run(grasp(guess="compression"))
+
+
+@pytest.fixture(scope="module")
+def led() -> Run:
+    """The grasp with it, the first that asks for it."""
+    tissue_alone._solved.cache_clear()
+    return Run(grasp())
+
+
+def test_newton_is_led_by_displacements_and_forces_together(compressed: Run, led: Run, monkeypatch: pytest.MonkeyPatch) -> None:
     expecting = tissue_alone.TissueAlone.expected_by
 
-    def weaker(self: Any, rest: Any, closing: float) -> Any:
+    def forceless(self: Any, rest: Any, closing: float) -> Any:
         state = expecting(self, rest, closing)
-        grown = [
-            replace(c.growth, pressure=forces * c.growth.pressure, tangential=forces * c.growth.tangential)
-            for c in state.contacts
-        ]
+        grown = [replace(c.growth, pressure=0 * c.growth.pressure, tangential=0 * c.growth.tangential) for c in state.contacts]
         return replace(state, contacts=tuple(replace(c, growth=g) for c, g in zip(state.contacts, grown, strict=True)))
 
-    monkeypatch.setattr(tissue_alone.TissueAlone, "expected_by", weaker)
-    led = grasp().run()
-    assert np.abs(taxels(led) - taxels(plain)).max() < 2e-3 * taxels(plain).max(), "within what the contact's tolerance leaves"
-    assert (of_the_lump(systems) <= 0.8 * without) == (forces == 1.0)
+    monkeypatch.setattr(tissue_alone.TissueAlone, "expected_by", forceless)  # the mutant: displacements alone
+    misled = Run(grasp())
+    for one in (led, misled):
+        apart = np.abs(one.taxels - compressed.taxels).max()
+        assert apart < 2e-3 * compressed.taxels.max(), "within what the contact's tolerance leaves"
+    assert led.systems <= 0.8 * compressed.systems < misled.systems
 
 
 def test_tissue_of_one_kind_is_where_the_guess_says() -> None:
@@ -115,12 +117,9 @@ def test_tissue_of_one_kind_is_where_the_guess_says() -> None:
         assert (friction <= contact.pair.traction_limit(pressure) * (1 + 1e-9)).all()
 
 
-def test_no_grasp_depends_on_those_before_it() -> None:
-    first = taxels(grasp().run())
-    grasp(loading=ts.close(to=1.05e-3, duration=1.0)).run()
-    assert np.array_equal(taxels(grasp().run()), first)
-    tissue_alone._solved.cache_clear()
-    assert np.array_equal(taxels(grasp().run()), first)
+def test_no_grasp_depends_on_those_before_it(led: Run) -> None:
+    Run(grasp(loading=ts.close(to=1.05e-3, duration=1.0)))
+    assert np.array_equal(Run(grasp()).taxels, led.taxels)
 
 
 def test_it_is_solved_once_for_all_that_differ_little_but_in_their_inclusions() -> None:
@@ -150,7 +149,9 @@ def test_where_it_is_no_help_there_is_none() -> None:
 @pytest.mark.parametrize(
     "error", [ConvergenceError("lost", []), Collapsed("an element is nearly inside out")], ids=["lost", "crushed"]
 )
-def test_tissue_that_newton_does_not_find_is_done_without(error: Unfinished, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_tissue_that_newton_does_not_find_is_done_without(
+    error: Unfinished, compressed: Run, monkeypatch: pytest.MonkeyPatch
+) -> None:
     solve = GraspModel.equilibrium
 
     def lost(self: GraspModel, *arguments: Any, **settings: Any) -> Any:
@@ -158,16 +159,14 @@ def test_tissue_that_newton_does_not_find_is_done_without(error: Unfinished, mon
             raise error
         return solve(self, *arguments, **settings)
 
-    compressed = taxels(grasp(guess="compression").run())
     monkeypatch.setattr(GraspModel, "equilibrium", lost)
-    assert np.array_equal(taxels(grasp().run()), compressed)
+    assert np.array_equal(Run(grasp()).taxels, compressed.taxels)
 
 
-def test_forces_are_balanced_as_exactly_as_the_case_asks() -> None:
-    exact = grasp(solver={"first_guess": "tissue"}).run()
-    coarse = grasp().run()
-    assert exact.steps[-1].residual <= 1e-10 < coarse.steps[-1].residual <= 1e-4
-    assert np.abs(taxels(coarse) - taxels(exact)).max() < 1e-5 * taxels(exact).max()
+def test_forces_are_balanced_as_exactly_as_the_case_asks(led: Run) -> None:
+    exact = Run(grasp(solver={"first_guess": "tissue"}))
+    assert exact.residual <= 1e-10 < led.residual <= 1e-4
+    assert np.abs(led.taxels - exact.taxels).max() < 1e-5 * exact.taxels.max()
 
 
 def test_a_balance_that_says_nothing_is_refused() -> None:
