@@ -123,7 +123,7 @@ def plain_parts_warning(readings: Readings, estimate: Estimate) -> str | None:
 
 
 def _lone_taxel(readings: Readings) -> str | None:
-    """That all taxels but one fit the reference, so that what is found rests on this one alone; None if it is not so.
+    """That all taxels but one fit the reference, so that whatever is found rests on this one; None if it is not so.
 
     Why: a taxel of 18 that read 50 mN too much, with a noise of 1 mN, was an inclusion beside it with a probability of 1.
     """
@@ -138,8 +138,8 @@ def _lone_taxel(readings: Readings) -> str | None:
         return None
     name = taxel_name(*map(int, np.unravel_index(change.argmax(), change.shape)))
     return (
-        f"without taxel {name} all readings fit the reference: what is found rests on it alone. A small inclusion close to it "
-        "may do that, and so may a taxel that reads wrong: grasp again a little aside, or leave it out as dead"
+        f"all readings but that of taxel {name} fit the reference: a small inclusion close to it may do that, and so may a taxel "
+        "that reads wrong; grasp again a little aside, or leave it out as dead"
     )
 
 
