@@ -9,8 +9,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from typing import Any, TypeVar
 
 import numpy as np
+from pydantic import BaseModel
 from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator, RegularGridInterpolator
 
 from tactsim.array import Array
@@ -27,7 +29,9 @@ from tactsim.mechanics.contact.posed_contact import PosedContact
 from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mechanics.models.first_guess import FIRST_PART
 from tactsim.mechanics.paths.loading import close
+from tactsim.model import FrozenModel
 
+Part = TypeVar("Part", bound=FrozenModel)
 RUNG = 1.25
 """Factor between the values of friction and of closings that are solved for."""
 MORE_FRICTION = 1.25
@@ -109,7 +113,7 @@ def tissue_alone(experiment: GraspSetup, closing: float) -> TissueAlone | None:
         return None
     contact, rung = experiment.contact, _rung(closing)
     if isinstance(contact, Coulomb) and contact.friction > 0:
-        contact = contact.model_copy(update={"friction": _rung(MORE_FRICTION * contact.friction)})
+        contact = _unchecked(contact, {"friction": _rung(MORE_FRICTION * contact.friction)})
     alone = {
         "inclusions": (),
         "contact": contact,
@@ -118,8 +122,16 @@ def tissue_alone(experiment: GraspSetup, closing: float) -> TissueAlone | None:
         "matrix": TaxelLayout(),
         "readout": None,
     }
-    setup = experiment.model_copy(update=alone)
+    setup = _unchecked(experiment, alone)
     return _solved(_Alone(setup.model_dump_json(), rung, setup))
+
+
+def _unchecked(value: Part, changes: dict[str, Any]) -> Part:
+    """The same part of a case with some of its fields changed.
+
+    Why unchecked: more friction, another closing and the usual taxels may be refused beside the rest of a case that is not.
+    """
+    return BaseModel.model_copy(value, update=changes)
 
 
 def _rung(value: float) -> float:

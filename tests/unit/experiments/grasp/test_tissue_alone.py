@@ -137,6 +137,29 @@ def test_it_is_solved_once_for_all_that_differ_little_but_in_their_inclusions() 
     assert found(penetration_tolerance=5e-6) is not one
 
 
+@pytest.mark.parametrize(
+    ("changes", "closing"),
+    [
+        ({"contact": ts.Coulomb(friction=10)}, CLOSING),
+        ({"loading": ts.close(to=0.9e-4, duration=1.0), "penetration_tolerance": 9e-6}, 0.9e-4),
+        ({}, 2e-5),
+        (
+            {
+                "upper": {"width": "24 mm", "depth": "24 mm"},
+                "lower": {"width": "24 mm", "depth": "24 mm"},
+                "matrix": ts.TaxelLayout(pitch=7e-3, size=7e-3),
+            },
+            CLOSING,
+        ),
+    ],
+    ids=["most friction", "widest tolerance", "a first step that was cut", "narrow jaws"],
+)
+def test_what_a_case_may_ask_for_has_its_tissue(changes: dict[str, Any], closing: float) -> None:
+    """A friction, a closing or taxels of the tissue's own that no case may have are no reason to refuse the case."""
+    middle = ts.Embedded(shape=ts.Sphere(center=(0.02, 0.02, 0.01), radius=RADIUS), material="lump")
+    assert tissue_alone.tissue_alone(grasp(**{"inclusions": [middle]} | changes), closing) is not None
+
+
 def test_where_it_is_no_help_there_is_none() -> None:
     relaxing = ts.Block(tissue={"kind": "neo_hookean", "c10": "2 kPa", "relaxation": {"fractions": [0.3], "times": ["1 s"]}})
     assert tissue_alone.tissue_alone(grasp(), CLOSING) is not None
