@@ -117,6 +117,11 @@ class Readings:
         for name, value in (parts | {"filled": checked_readings(forces, self.valid)}).items():
             object.__setattr__(self, name, value)
 
+    @property
+    def trusted(self) -> Array:
+        """Which taxels (taxels,) can be trusted: jaw by jaw, row by row."""
+        return np.ones(self.forces.size, bool) if self.valid is None else np.asarray(self.valid).ravel()
+
     def taxel_places(self) -> tuple[Array, Array]:
         """Centres of the columns (columns,) along x and of the rows (rows,) along y in m, from the undeformed block's corner."""
         middle = np.asarray(self.middle)

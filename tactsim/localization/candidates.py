@@ -82,6 +82,10 @@ class Candidates:
         begins, ends, radii = (part[which] for part in (self.geometry.begins, self.geometry.ends, self.geometry.radii))
         return Candidates(Bodies(self.geometry.kind, begins, ends, radii), self.signals[which])
 
+    def felt_by(self, trusted: Array) -> Candidates:
+        """The candidates with their signals on the taxels of a mask (taxels,) alone: what an invalid one reads says nothing."""
+        return self if trusted.all() else Candidates(self.geometry, np.ascontiguousarray(self.signals[:, trusted]))
+
 
 def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:
     """Balls at every ``every``-th centre of the table with the tabulated radii nearest to ``radii``, inside the block by a gap.

@@ -176,10 +176,9 @@ class _Table:
         signals = self.candidates.signals
         cross = (signals[first] * signals[second]).sum(axis=1)
         a, b, u, w = self.stiff[first], self.stiff[second], self.along[first], self.along[second]
-        determinant = a * b - cross**2
-        means = (b * u - cross * w) / determinant, (a * w - cross * u) / determinant
-        spreads = b / determinant, a / determinant
-        return means, spreads
+        spreads = 1 / _remainder(a, b, cross, self.change), 1 / _remainder(b, a, cross, self.change)
+        second = spreads[1] * (w - cross * u / a)
+        return ((u - cross * second) / a, second), spreads
 
     def nearest(self, coarse: Candidates, number: int) -> int:
         """The candidate most like one of another grid."""
@@ -194,9 +193,14 @@ def _pair_evidence(u: Array, w: Array, *, a: Array, b: Array, cross: Array, chan
 
     ``u`` and ``w`` are the products of the two signals with the change, ``a`` and ``b`` their squares, ``cross`` their product.
     """
-    determinant = a * b - cross**2
-    explained = (b * u**2 - 2 * cross * u * w + a * w**2) / determinant
-    return explained / 2 - np.log(determinant / change.ridge**2) / 2
+    remainder = _remainder(b, a, cross, change)
+    explained = u**2 / a + (w - cross * u / a) ** 2 / remainder
+    return explained / 2 - np.log(a / change.ridge * remainder / change.ridge) / 2
+
+
+def _remainder(a: Array, b: Array, cross: Array, change: Change) -> Array:
+    """Square of a signal less its part along another, which is at least what the prior adds, also where rounding leaves less."""
+    return np.maximum(a - cross**2 / b, change.ridge)
 
 
 def _best_pairs(coarse: Candidates, change: Change) -> list[tuple[int, int]]:

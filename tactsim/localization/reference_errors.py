@@ -21,6 +21,7 @@ import numpy as np
 import scipy
 
 from tactsim.array import Array
+from tactsim.errors import InputError
 
 SAME_TISSUE = 0.02
 """b: standard deviation of the factor where the reference is of the same tissue; closing and friction are not known exactly."""
@@ -146,7 +147,17 @@ def fitted(signals: Array, change: Array, errors: ReferenceErrors, contrast_spre
     change : d (taxels,) in N; not one that a factor explains without any error
     errors : of the reference and of the signals
     contrast_spread : standard deviation of the contrast beforehand
+
+    Raises
+    ------
+    InputError
+        If no error is left by which to weigh the change.
     """
+    if errors.white(change) == 0:
+        raise InputError(
+            "the readings differ from the reference, and the noise and all errors of the estimator are 0; give noise or a "
+            "model_error above 0"
+        )
     plain, few = errors.plain, signals[::THINNING]
     excess = errors.excess(change, errors.white(0 * change))
     for _ in range(ROUNDS):

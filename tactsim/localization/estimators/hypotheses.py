@@ -137,12 +137,12 @@ class HypothesesEstimator(Estimator):
         if readings.difference is None or readings.response is None:
             raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
         response, size = readings.response, readings.block_size
-        values, priors = readings.difference.ravel(), self._priors(readings)
+        values, priors = readings.difference.ravel()[readings.trusted], self._priors(readings)
         if any(without_error(values, errors) for errors in priors):
             return Estimate(False, (), UNCHANGED, 0.0, self._probabilities({"none": 0.0}))
-        balls = ball_candidates(response, size, self._ball_radii(size), gap=gap_in(size, self.gap))
+        balls = ball_candidates(response, size, self._ball_radii(size), gap=gap_in(size, self.gap)).felt_by(readings.trusted)
         fits = [fitted(balls.signals, values, errors, self.contrast_spread) for errors in priors]
-        bodies = {str(name): self._bodies(name, balls, response, size) for name in self.classes}
+        bodies = {str(name): self._bodies(name, balls, readings, response) for name in self.classes}
         explained = {name: [self._explained(name, fit, *some) for fit in fits] for name, some in bodies.items()}
         densities = {name: [one.log_density for one in each] for name, each in explained.items()}
         densities["none"] = [fit.evidence_of_none for fit in fits]
@@ -164,7 +164,7 @@ class HypothesesEstimator(Estimator):
 
     def _priors(self, readings: Readings) -> list[ReferenceErrors]:
         """Errors of a reference of the same tissue, and of another."""
-        plain = np.asarray(readings.reference, dtype=float).ravel()
+        plain = np.asarray(readings.reference, dtype=float).ravel()[readings.trusted]
         same = ReferenceErrors(plain, readings.noise, 0.0, 0.0, self.model_error)
         other = ReferenceErrors(plain, readings.noise, self.background_error, self.factor_spread, self.model_error)
         return [same, other] if self.factor_spread > 0 else [same]
@@ -181,21 +181,24 @@ class HypothesesEstimator(Estimator):
         return ExplainedChange(fit.log_whitening + bodies.evidence, bodies, white)
 
     def _bodies(
-        self, name: str, balls: Candidates, response: TissueResponse, size: Array
+        self, name: str, balls: Candidates, readings: Readings, response: TissueResponse
     ) -> tuple[Candidates, Candidates | None]:
         """The bodies of a class, those of lumps being ``balls``, and for pairs a few of them."""
+        size, trusted = readings.block_size, readings.trusted
         gap = gap_in(size, self.gap)
         if name == "lump":
             return balls, None
         if name == "two_lumps":
-            return balls, ball_candidates(response, size, self._ball_radii(size)[1::2], gap=gap, every=COARSE)
+            some = ball_candidates(response, size, self._ball_radii(size)[1::2], gap=gap, every=COARSE)
+            return balls, some.felt_by(trusted)
         radii = radius_steps(limits_in(size, self.tube_radii, TUBE_RADII), size)
         if name == "artery":
-            return tube_candidates(response, size, radii, gap=gap), None
-        few = tube_candidates(response, size, radii[1::2], gap=gap, closed=False, spacing=COARSE_SPACING)
+            return tube_candidates(response, size, radii, gap=gap).felt_by(trusted), None
+        few = tube_candidates(response, size, radii[1::2], gap=gap, closed=False, spacing=COARSE_SPACING).felt_by(trusted)
         lower = few.geometry.begins[:, 2]
         kept = few.chosen(np.isin(lower, np.unique(lower)[::COARSE]))
-        return tube_candidates(response, size, radii, gap=gap, closed=False, spacing=FINE_SPACING), kept
+        fine = tube_candidates(response, size, radii, gap=gap, closed=False, spacing=FINE_SPACING).felt_by(trusted)
+        return fine, kept
 
     def _ball_radii(self, size: Array) -> list[float]:
         """Radii in m of the balls that are tried in a block of this size (3,) in m."""

@@ -117,9 +117,10 @@ class ModelBasedEstimator(Estimator):
         """
         if readings.difference is None or readings.response is None or readings.reference is None:
             raise InputError("the model-based estimator needs a reference without a lump and the response of the tissue")
-        change, plain = readings.difference.ravel(), np.asarray(readings.reference, dtype=float).ravel()
+        trusted = readings.trusted
+        change, plain = (values.ravel()[trusted] for values in (readings.difference, np.asarray(readings.reference, dtype=float)))
         limits, gap = limits_in(readings.block_size, self.radii, BALL_RADII), gap_in(readings.block_size, self.gap)
-        candidates = balls_between(readings.response, readings.block_size, limits, gap=gap)
+        candidates = balls_between(readings.response, readings.block_size, limits, gap=gap).felt_by(trusted)
         balls = candidates.geometry
         priors = self._errors(plain, readings.noise)
         if any(without_error(change, errors) for errors in priors):
@@ -158,7 +159,7 @@ class ModelBasedEstimator(Estimator):
             return None
         radii, gap = radius_steps(limits_in(size, self.radii, BALL_RADII), size), gap_in(size, self.gap)
         fine, coarse = (
-            over_errors(ball_candidates(response, size, tried, gap=gap, every=every), fit)
+            over_errors(ball_candidates(response, size, tried, gap=gap, every=every).felt_by(readings.trusted), fit)
             for tried, every in ((radii, EVERY), (radii[1::2], COARSE))
         )
         white = Change.of_fit(fit, self.contrast_spread)

@@ -228,6 +228,24 @@ def test_readings_equal_to_the_reference_without_noise_hold_nothing(response):
     assert estimate.classes == dict.fromkeys(CLASSES, 0.0) | {"none": 1.0}
 
 
+@pytest.mark.parametrize("noise", [0.0, 1e-9])
+def test_what_a_solver_leaves_of_a_change_has_probabilities(response, noise):
+    """Over so small errors the signals of a pair are parallel to rounding, and its determinant can come out as nought."""
+    left = 1e-9 * np.random.default_rng(3).standard_normal((2, 3, 3))
+    given = replace(readings(response, left, noise=0.0), noise=noise)
+    estimate = HypothesesEstimator(radii=(2.5e-3, 4.5e-3), tube_radii=(2.5e-3, 4.5e-3)).estimate(given)
+    assert np.isfinite(list(estimate.classes.values())).all()
+
+
+@pytest.mark.parametrize(
+    "estimator", [HypothesesEstimator(model_error=0.0), ModelBasedEstimator(model_error=0, background_error=0)]
+)
+def test_a_change_without_any_error_is_refused(response, estimator):
+    given = readings(response, balls(response, (20e-3, 20e-3, 12e-3)), noise=0.0)
+    with pytest.raises(InputError, match="all errors of the estimator are 0; give noise or a model_error above 0"):
+        estimator.estimate(given)
+
+
 def test_classes_by_shapes_and_by_estimates():
     given = [(), ("sphere",), ("sphere", "ellipsoid"), ("tube",), ("tube", "tube"), ("sphere", "tube"), ("sphere",) * 3]
     assert [class_of(kinds) for kinds in given] == [*CLASSES, None, None]
