@@ -92,8 +92,8 @@ def test_planes_mirror_the_jaws_too(tilt, shift, copies):
 
 @pytest.mark.slow
 def test_a_jaw_aside_is_grasped_as_the_whole():
-    """In a third of the step: so close to its edge Newton finds into longer ones with some orders of MKL's sums, and some errors of
-    linear steps, only."""
+    """In a third of the step: so close to its edge Newton finds into longer ones with some orders of MKL's sums only, and with
+    some errors of linear steps."""
     aside, whole = (model(shift=4e-3, width=16e-3) for _ in range(2))
     assert_same(aside, grasped(aside, CLOSING / 3), grasped(solved_whole(whole), CLOSING / 3))
     assert aside.problem.copies == 2, "the plane across y still mirrors it"
