@@ -119,8 +119,8 @@ class Readings:
 
     @property
     def trusted(self) -> Array:
-        """Which taxels (taxels,) can be trusted: jaw by jaw, row by row."""
-        return np.ones(self.forces.size, bool) if self.valid is None else np.asarray(self.valid).ravel()
+        """Which taxels (jaw, row, column) can be trusted."""
+        return np.ones(self.forces.shape, bool) if self.valid is None else np.asarray(self.valid)
 
     def taxel_places(self) -> tuple[Array, Array]:
         """Centres of the columns (columns,) along x and of the rows (rows,) along y in m, from the undeformed block's corner."""

@@ -83,8 +83,8 @@ class Candidates:
         return Candidates(Bodies(self.geometry.kind, begins, ends, radii), self.signals[which])
 
     def felt_by(self, trusted: Array) -> Candidates:
-        """The candidates with their signals on the taxels of a mask (taxels,) alone: what an invalid one reads says nothing."""
-        return self if trusted.all() else Candidates(self.geometry, np.ascontiguousarray(self.signals[:, trusted]))
+        """The candidates with their signals on these taxels (jaw, row, column) alone: what an invalid one reads says nothing."""
+        return self if trusted.all() else Candidates(self.geometry, np.ascontiguousarray(self.signals[:, trusted.ravel()]))
 
 
 def ball_candidates(response: TissueResponse, size: Array, radii: Sequence[float], *, gap: float, every: int = 1) -> Candidates:

@@ -177,8 +177,8 @@ class _Table:
         cross = (signals[first] * signals[second]).sum(axis=1)
         a, b, u, w = self.stiff[first], self.stiff[second], self.along[first], self.along[second]
         spreads = 1 / _remainder(a, b, cross, self.change), 1 / _remainder(b, a, cross, self.change)
-        second = spreads[1] * (w - cross * u / a)
-        return ((u - cross * second) / a, second), spreads
+        mean = spreads[1] * (w - cross * u / a)
+        return ((u - cross * mean) / a, mean), spreads
 
     def nearest(self, coarse: Candidates, number: int) -> int:
         """The candidate most like one of another grid."""

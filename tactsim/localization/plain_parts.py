@@ -127,16 +127,18 @@ def _lone_taxel(readings: Readings) -> str | None:
 
     Why: a taxel of 18 that read 50 mN too much, with a noise of 1 mN, was an inclusion beside it with a probability of 1.
     """
-    trusted = _beside(readings, ())
+    trusted = readings.trusted
     parts = _of_taxels(readings, trusted)
     if parts is None or parts.fits or readings.difference is None:
         return None
     change = np.where(trusted, np.abs(readings.difference), 0.0)
-    others = trusted & (change < change.max())
+    lone = np.unravel_index(change.argmax(), change.shape)
+    others = trusted.copy()
+    others[lone] = False
     without = _of_taxels(readings, others)
     if without is None or not without.fits or change[others].max() > ALONE * change.max():
         return None
-    name = taxel_name(*map(int, np.unravel_index(change.argmax(), change.shape)))
+    name = taxel_name(*map(int, lone))
     return (
         f"all readings but that of taxel {name} fit the reference: a small inclusion close to it may do that, and so may a taxel "
         "that reads wrong; grasp again a little aside, or leave it out as dead"
@@ -158,7 +160,7 @@ def _multiple_under_inclusions(readings: Readings, estimate: Estimate) -> str | 
 
     An estimator without a factor covers the block with inclusions rather than say that the tissue is another.
     """
-    everywhere = _of_taxels(readings, _beside(readings, ())) if estimate.inclusions else None
+    everywhere = _of_taxels(readings, readings.trusted) if estimate.inclusions else None
     if everywhere is None or everywhere.fits or not everywhere.fits_scaled or everywhere.factor < 0:
         return None
     return (
@@ -176,8 +178,7 @@ def _beside(readings: Readings, inclusions: Sequence[EstimatedInclusion]) -> Arr
     beside = np.ones(places.shape[:2], bool)
     for one in inclusions:
         beside &= _distance(places, one) > REACH * readings.layout.pitch
-    both = np.broadcast_to(beside, readings.forces.shape)
-    return both if readings.valid is None else both & readings.valid
+    return beside & readings.trusted
 
 
 def _distance(places: Array, one: EstimatedInclusion) -> Array:

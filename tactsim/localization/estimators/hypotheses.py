@@ -137,7 +137,7 @@ class HypothesesEstimator(Estimator):
         if readings.difference is None or readings.response is None:
             raise InputError("the estimator of hypotheses needs a reference without a lump and the response of the tissue")
         response, size = readings.response, readings.block_size
-        values, priors = readings.difference.ravel()[readings.trusted], self._priors(readings)
+        values, priors = readings.difference[readings.trusted], self._priors(readings)
         if any(without_error(values, errors) for errors in priors):
             return Estimate(False, (), UNCHANGED, 0.0, self._probabilities({"none": 0.0}))
         balls = ball_candidates(response, size, self._ball_radii(size), gap=gap_in(size, self.gap)).felt_by(readings.trusted)
@@ -164,7 +164,7 @@ class HypothesesEstimator(Estimator):
 
     def _priors(self, readings: Readings) -> list[ReferenceErrors]:
         """Errors of a reference of the same tissue, and of another."""
-        plain = np.asarray(readings.reference, dtype=float).ravel()[readings.trusted]
+        plain = np.asarray(readings.reference, dtype=float)[readings.trusted]
         same = ReferenceErrors(plain, readings.noise, 0.0, 0.0, self.model_error)
         other = ReferenceErrors(plain, readings.noise, self.background_error, self.factor_spread, self.model_error)
         return [same, other] if self.factor_spread > 0 else [same]

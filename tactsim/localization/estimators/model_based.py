@@ -118,7 +118,7 @@ class ModelBasedEstimator(Estimator):
         if readings.difference is None or readings.response is None or readings.reference is None:
             raise InputError("the model-based estimator needs a reference without a lump and the response of the tissue")
         trusted = readings.trusted
-        change, plain = (values.ravel()[trusted] for values in (readings.difference, np.asarray(readings.reference, dtype=float)))
+        change, plain = (values[trusted] for values in (readings.difference, np.asarray(readings.reference, dtype=float)))
         limits, gap = limits_in(readings.block_size, self.radii, BALL_RADII), gap_in(readings.block_size, self.gap)
         candidates = balls_between(readings.response, readings.block_size, limits, gap=gap).felt_by(trusted)
         balls = candidates.geometry

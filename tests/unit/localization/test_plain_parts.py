@@ -98,6 +98,14 @@ def test_a_finding_that_rests_on_one_taxel_is_a_warning_that_names_it(wrong: flo
     assert (estimate.present, plain_parts_warning(left_out, estimate)) == (False, None), "as dead it finds nothing"
 
 
+def test_two_taxels_that_change_alike_are_no_lone_one() -> None:
+    """A lump half way between the jaws raises the taxels above and below it by the same."""
+    alike = PLAIN.copy()
+    alike[:, 1, 1] += 0.05
+    given = Readings(alike, LAYOUT, SIZE, reference=PLAIN, noise=NOISE)
+    assert "all readings but that of" not in str(plain_parts_warning(given, NOTHING))
+
+
 def test_a_lump_rests_on_more_than_one_taxel() -> None:
     generator = np.random.default_rng(5)
     for seed in range(60):
