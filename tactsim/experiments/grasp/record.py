@@ -17,7 +17,9 @@ from tactsim.experiments.grasp.scene import EmbeddedShape, MeshReport, Simulated
 from tactsim.experiments.grasp.setup import GraspSetup
 from tactsim.experiments.grasp.symmetry import mirror_asymmetry, mirror_axes
 from tactsim.experiments.grasp.taxel_voltages import readout_assumptions, readout_quantities, readout_warnings, single_step
+from tactsim.experiments.grasp.tissue_alone import why_not_tissue
 from tactsim.experiments.grasp.warnings import ragged, smaller_elements, suction, uneven
+from tactsim.fem.equilibrium.newton_options import NewtonOptions
 from tactsim.interfaces.run import Findings
 from tactsim.interfaces.taxel_layout import JAWS
 from tactsim.mechanics.models.block_model import GraspModel
@@ -155,6 +157,7 @@ class GraspRecord(ContactRecord[GraspModel]):
             assumptions.append(
                 f"the grasp is its own mirror image: one part of {copies} is solved, and every solution looked at in the whole"
             )
+        assumptions += self._solver_assumptions()
         assumptions.append(penetration_allowed(experiment.tolerance))
         if "last" in self._kept and (last := self._kept["last"].state.contact.regularisation.tolerance) < experiment.tolerance:
             assumptions.append(f"penetration below {format_quantity(last, 'm')} at the end, for the error of the force")
@@ -162,6 +165,17 @@ class GraspRecord(ContactRecord[GraspModel]):
             assumptions.append(ERROR_IN_TIME.format(experiment.time.tolerance))
         if experiment.readout is not None:
             assumptions += readout_assumptions(experiment.readout, experiment.matrix.area)
+        return assumptions
+
+    def _solver_assumptions(self) -> list[str]:
+        """What the case chooses of the solver, if it is not the usual, and whether it acts."""
+        solver, assumptions = self.experiment.solver, []
+        if solver.first_guess == "tissue":
+            hindrance = why_not_tissue(self.experiment)
+            acts = "in the tissue without its inclusions, if that converges"
+            assumptions.append(f"solver.first_guess: Newton begins {f'as usual, for {hindrance}' if hindrance else acts}")
+        if solver.balance > NewtonOptions.tolerance:
+            assumptions.append(f"solver.balance: unbalanced forces of up to {solver.balance:g} of the largest nodal force")
         return assumptions
 
     def warnings(self) -> list[str]:

@@ -105,11 +105,9 @@ class _OnFace:
 def tissue_alone(experiment: GraspSetup, closing: float) -> TissueAlone | None:
     """The tissue of a grasp without its inclusions, at a closing in m near to this one and a friction near to its own.
 
-    None where the case does not ask for it or it is no help: without inclusions, on other cells than graded ones, in tissue that
-    relaxes, or if Newton does not find it.
+    None where the case does not ask for it, where it does not act, or if Newton does not find it.
     """
-    asked = experiment.solver.first_guess == "tissue" and isinstance(experiment.source, GradedSource)
-    if not asked or not experiment.inclusions or any(material.relaxation for material in experiment.materials):
+    if experiment.solver.first_guess != "tissue" or why_not_tissue(experiment) is not None:
         return None
     contact, rung = experiment.contact, _rung(closing)
     if isinstance(contact, Coulomb) and contact.friction > 0:
@@ -124,6 +122,19 @@ def tissue_alone(experiment: GraspSetup, closing: float) -> TissueAlone | None:
     }
     setup = _unchecked(experiment, alone)
     return _solved(_Alone(setup.model_dump_json(), rung, setup))
+
+
+def why_not_tissue(experiment: GraspSetup) -> str | None:
+    """Why Newton does not begin in the tissue without inclusions, asked for or not; None where it can."""
+    if not experiment.inclusions:
+        return "nothing is embedded"
+    if experiment.loading.control == "force":
+        return "the jaws follow a force"
+    if any(shape.hollow for shape in experiment.shapes):
+        return "the wall of a hollow tube gives way"
+    if any(material.relaxation for material in experiment.materials):
+        return "a material relaxes"
+    return None if isinstance(experiment.source, GradedSource) else "the mesh is not of graded cells"
 
 
 def _unchecked(value: Part, changes: dict[str, Any]) -> Part:

@@ -20,6 +20,7 @@ from tactsim.experiments.grasp.model import grasp_mesh, grasp_model
 from tactsim.experiments.grasp.regularisation import regularisation
 from tactsim.fem.equilibrium import newton
 from tactsim.mechanics.models.block_model import GraspModel
+from tactsim.mechanics.models.first_guess import FIRST_PART
 from tactsim.results.result import Status
 
 pytestmark = pytest.mark.usefixtures("one_thread")
@@ -64,7 +65,7 @@ class Run:
             patched.setattr(newton._Solution, "_linear_step", counted)
             result = experiment.run()
         assert result.status is Status.CONVERGED, result.reason
-        self.residual = result.steps[-1].residual
+        self.residual, self.assumptions = result.steps[-1].residual, result.assumptions
         self.taxels = np.concatenate([result.quantities[f"taxel_force_{side}"].value for side in ("upper", "lower")])
         self.systems = sum(size == max(sizes) for size in sizes)
 
@@ -117,9 +118,16 @@ def test_tissue_of_one_kind_is_where_the_guess_says() -> None:
         assert (friction <= contact.pair.traction_limit(pressure) * (1 + 1e-9)).all()
 
 
-def test_no_grasp_depends_on_those_before_it(led: Run) -> None:
-    Run(grasp(loading=ts.close(to=1.05e-3, duration=1.0)))
-    assert np.array_equal(Run(grasp()).taxels, led.taxels)
+def test_no_grasp_depends_on_those_before_it() -> None:
+    alone = tissue_alone.tissue_alone(grasp(), CLOSING)
+    tissue_alone._solved.cache_clear()
+    tissue_alone.tissue_alone(grasp(loading=ts.close(to=1.05e-3, duration=1.0)), 1.05e-3)
+    after = tissue_alone.tissue_alone(grasp(), CLOSING)
+    assert alone is not None
+    assert after is not None
+    assert np.array_equal(after.displacements.values, alone.displacements.values)
+    for side, forces in alone.forces.items():
+        assert np.array_equal(after.forces[side].between.values, forces.between.values)
 
 
 def test_it_is_solved_once_for_all_that_differ_little_but_in_their_inclusions() -> None:
@@ -160,30 +168,53 @@ def test_what_a_case_may_ask_for_has_its_tissue(changes: dict[str, Any], closing
     assert tissue_alone.tissue_alone(grasp(**{"inclusions": [middle]} | changes), closing) is not None
 
 
-def test_where_it_is_no_help_there_is_none() -> None:
-    relaxing = ts.Block(tissue={"kind": "neo_hookean", "c10": "2 kPa", "relaxation": {"fractions": [0.3], "times": ["1 s"]}})
+RELAXING = ts.Block(tissue={"kind": "neo_hookean", "c10": "2 kPa", "relaxation": {"fractions": [0.3], "times": ["1 s"]}})
+TUBE = ts.Embedded(shape=ts.Tube.example(), material="lump")
+PUSHED = {"control": "force", "pieces": [{"kind": "ramp", "to": "1 N", "duration": "1 s"}]}
+
+
+@pytest.mark.parametrize(
+    ("changes", "hindrance"),
+    [
+        ({"inclusions": []}, "nothing is embedded"),
+        ({"inclusions": [TUBE]}, "wall of a hollow tube"),
+        ({"mesh": {"kind": "structured", "cells": [8, 8, 4]}}, "not of graded cells"),
+        ({"block": RELAXING}, "a material relaxes"),
+        ({"loading": PUSHED}, "follow a force"),
+    ],
+    ids=["nothing", "tube", "cells", "relaxing", "force"],
+)
+def test_where_it_does_not_act_it_is_said_why(changes: dict[str, Any], hindrance: str) -> None:
+    assert hindrance in str(tissue_alone.why_not_tissue(grasp(**changes)))
+    assert tissue_alone.tissue_alone(grasp(**changes), CLOSING) is None
+
+
+def test_it_acts_where_it_is_asked_for_alone() -> None:
     assert tissue_alone.tissue_alone(grasp(), CLOSING) is not None
     assert tissue_alone.tissue_alone(grasp(guess="compression"), CLOSING) is None
-    assert tissue_alone.tissue_alone(grasp(inclusions=[]), CLOSING) is None
-    assert tissue_alone.tissue_alone(grasp(mesh={"kind": "structured", "cells": [8, 8, 4]}), CLOSING) is None
-    assert tissue_alone.tissue_alone(grasp(block=relaxing), CLOSING) is None
+
+
+def test_the_result_says_what_the_case_chooses_of_the_solver(led: Run, compressed: Run) -> None:
+    begun = "solver.first_guess: Newton begins in the tissue without its inclusions, if that converges"
+    assert begun in led.assumptions
+    assert "solver.balance: unbalanced forces of up to 0.0001 of the largest nodal force" in led.assumptions
+    assert not any("first_guess" in one for one in compressed.assumptions)
 
 
 @pytest.mark.parametrize(
     "error", [ConvergenceError("lost", []), Collapsed("an element is nearly inside out")], ids=["lost", "crushed"]
 )
-def test_tissue_that_newton_does_not_find_is_done_without(
-    error: Unfinished, compressed: Run, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    solve = GraspModel.equilibrium
+def test_tissue_that_newton_does_not_find_is_done_without(error: Unfinished, monkeypatch: pytest.MonkeyPatch) -> None:
+    def lost(*_arguments: Any, **_settings: Any) -> Any:
+        raise error
 
-    def lost(self: GraspModel, *arguments: Any, **settings: Any) -> Any:
-        if self.mesh.regions.max() == 0:
-            raise error
-        return solve(self, *arguments, **settings)
-
+    experiment = grasp()
+    model = grasp_model(experiment, grasp_mesh(experiment))
+    rest = model.start(experiment.contact, regularisation(experiment))
     monkeypatch.setattr(GraspModel, "equilibrium", lost)
-    assert np.array_equal(Run(grasp()).taxels, compressed.taxels)
+    guess = path._first_guess(experiment, model, rest, CLOSING)
+    assert guess.state is rest
+    assert np.array_equal(guess.unknowns, model.compressed(FIRST_PART * CLOSING))
 
 
 def test_forces_are_balanced_as_exactly_as_the_case_asks(led: Run) -> None:
