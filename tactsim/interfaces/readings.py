@@ -17,6 +17,8 @@ from tactsim.units import format_quantity
 
 MOST_NAMED = 6
 """Taxels that a message names before it counts the rest."""
+PULLED = 4.0
+"""Standard deviations of the sum of a jaw's readings below zero from which on they are said to pull."""
 RESOLUTION = 0.1
 """Force in N that a sensor resolves: thesis, 3.1.2 and 6.2."""
 SAME_BLOCK = 1e-6
@@ -139,6 +141,18 @@ def silent_taxels(readings: Array) -> Array:
     padded = np.pad(np.asarray(readings, dtype=float), ((0, 0), (1, 1), (1, 1)), constant_values=np.inf)
     beside = (padded[:, :-2, 1:-1], padded[:, 2:, 1:-1], padded[:, 1:-1, :-2], padded[:, 1:-1, 2:])
     return (np.asarray(readings) == 0) & np.logical_and.reduce([part > 0 for part in beside]) & (np.prod(readings.shape[1:]) > 1)
+
+
+def pulled_words(readings: Array, noise: float) -> str | None:
+    """What the user must know where the readings (jaw, row, column) of a jaw pull on the whole, beyond their noise in N."""
+    sums = np.sum(readings, axis=(1, 2))
+    pulled = sums < -PULLED * noise * np.sqrt(np.size(readings[0]))
+    if not pulled.any():
+        return None
+    sides = " and ".join(
+        f"the {side} jaw's by {format_quantity(-float(sums[k]), 'N')}" for k, side in enumerate(JAWS) if pulled[k]
+    )
+    return f"the readings pull on the whole, {sides}, which tissue between jaws does not: forces are positive that press"
 
 
 def rising(difference: Array) -> tuple[Array, bool]:

@@ -27,7 +27,7 @@ from tactsim.experiments.localization.source import (
 from tactsim.interfaces import Experiment
 from tactsim.interfaces.both_jaws import TAXEL_DIFFERENCE, TAXEL_FORCE, Source
 from tactsim.interfaces.estimate import Estimate, inclusion_in_words
-from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, silent_taxels, silent_words
+from tactsim.interfaces.readings import ROUNDING_NOISE, Readings, pulled_words, silent_taxels, silent_words
 from tactsim.interfaces.run import Course, Findings
 from tactsim.interfaces.taxel_layout import JAWS, JawName, TaxelLayout
 from tactsim.localization.checked_estimate import estimate_of
@@ -165,6 +165,8 @@ class Localization(Experiment):
         silent = silent_taxels(readings.filled)
         if silent.any():
             warnings.append(f"{silent_words(silent)}; name dead taxels by the key dead")
+        if (pulled := pulled_words(readings.filled, self.noise)) is not None:
+            warnings.append(pulled)
         if self._leaves_reference_out(readings):
             warnings.append("the reference was not used: this estimator reads the forces as they are; take background: reference")
         if plain is None:

@@ -12,7 +12,7 @@ from tactsim.experiments.grasp.scene import GraspScene
 from tactsim.experiments.grasp.setup import JawSettings
 from tactsim.interfaces import Inclusion
 from tactsim.interfaces.both_jaws import TAXEL_FORCE
-from tactsim.interfaces.readings import Readings, named_taxels, silent_taxels, silent_words
+from tactsim.interfaces.readings import Readings, named_taxels, pulled_words, silent_taxels, silent_words
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.live.sources.noise import RESOLVED, ReadingNoise
 
@@ -153,6 +153,8 @@ class Frame:
             notes.append(f"dead or saturated taxels, interpolated from their neighbours: {named_taxels(~self.valid)}")
         if (silent := silent_taxels(self.forces) & self.valid).any():
             notes.append(silent_words(silent))
+        if (pulled := pulled_words(np.where(self.valid, self.forces, 0.0), self.noise.deviation)) is not None:
+            notes.append(pulled)
         return tuple(notes)
 
     def shown_forces(self) -> Array:

@@ -74,6 +74,13 @@ def test_a_taxel_that_reads_exactly_zero_among_others_that_press_is_told(tmp_pat
     assert result_recordings(grasp_folder(tmp_path / "b", forces))["taxel_force"].frame(0).notes() == ()
 
 
+def test_forces_that_pull_on_the_whole_are_told(tmp_path: Path) -> None:
+    forces = np.full((1, 2, 3, 3), 0.5)
+    forces[0, 1] *= -1
+    (note,) = result_recordings(grasp_folder(tmp_path / "a", forces))["taxel_force"].frame(0).notes()
+    assert "pull on the whole, the lower jaw's by 4.5 N" in note
+
+
 def test_a_taxel_is_saturated_while_its_samples_are(tmp_path: Path) -> None:
     result = made_up_grasp()
     flags = np.zeros((4, 2, 3, 3), int)

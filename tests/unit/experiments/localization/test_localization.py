@@ -18,6 +18,7 @@ from tactsim.experiments.grasp.figures.views import VIEWS, views_figure
 from tactsim.experiments.localization.figures import space
 from tactsim.experiments.localization.figures.parts import localized
 from tactsim.experiments.localization.localization import Localization
+from tactsim.interfaces.readings import pulled_words
 from tactsim.interfaces.taxel_layout import JAWS, TaxelLayout
 from tactsim.localization.estimators.thesis import ThesisEstimator
 from tactsim.mesh.inclusions.sphere import Sphere
@@ -217,6 +218,16 @@ def test_dead_taxels_are_interpolated_and_reported(folders):
     assert views_figure(result, localized(result)).axes
     with pytest.raises(InputError, match="dead: taxel upper, 4, 1 of a matrix of 3 rows"):
         run(folders, dead=(("upper", 4, 1),))
+
+
+def test_forces_that_pull_on_the_whole_are_warned_of(folders, tmp_path):
+    """Forces and reference of the wrong sign gave a softer lump, silently."""
+    pulled = stored(tmp_path / "pulled", grasp(-PLAIN - BALL)), stored(tmp_path / "plain", grasp(-PLAIN))
+    (warning,) = [one for one in run(pulled).warnings if "pull" in one]
+    assert "the upper jaw's by" in warning
+    assert "the lower jaw's by" in warning
+    assert not any("pull" in one for one in run(folders).warnings)
+    assert pulled_words(np.full((2, 3, 3), -1e-3), noise=1e-3) is None, "what noise alone may add up to"
 
 
 def test_saturated_taxels_of_read_forces_are_not_trusted(folders, tmp_path):
