@@ -45,7 +45,7 @@ UNCHANGED = "no inclusion: the readings are those of the reference"
 class ReferenceErrors:
     r"""Gaussian errors of a change of force from a reference.
 
-    .. math:: S = \bigl(2 \sigma^2 + e_m^2 \overline{a^2} + e_b^2 \overline{p^2}\bigr) 1 + \beta^2 p p^T
+    .. math:: S = \bigl(v + e_m^2 \overline{a^2}\bigr) 1 + \beta^2 p p^T, \quad v = 2 \sigma^2 + e_b^2 \overline{p^2}
 
     Attributes
     ----------
@@ -62,13 +62,17 @@ class ReferenceErrors:
     factor: float
     model: float
 
-    def white(self, added: Array) -> float:
-        """Variance in N^2 from taxel to taxel beside a body that changes the forces by ``added`` (taxels,) in N."""
-        return float(2 * self.noise**2 + self.model**2 * np.mean(added**2) + self.taxel**2 * np.mean(self.plain**2))
+    def white(self, left: Array) -> float:
+        """Variance in N^2 from taxel to taxel beside a body, from what the factor leaves of a change (taxels,) in N.
 
-    def covariance(self, added: Array) -> Array:
-        """S (taxels, taxels) in N^2 beside a body that changes the forces by ``added`` (taxels,) in N."""
-        return self.white(added) * np.eye(self.plain.size) + self.factor**2 * np.outer(self.plain, self.plain)
+        Its mean square less v is that of what the body adds: errors alone, which vary by chance, are no body's.
+        """
+        alone = 2 * self.noise**2 + self.taxel**2 * np.mean(self.plain**2)
+        return float(alone + self.model**2 * max(np.mean(left**2) - alone, 0.0))
+
+    def covariance(self, left: Array) -> Array:
+        """S (taxels, taxels) in N^2 beside a body, from what the factor leaves of a change (taxels,) in N."""
+        return self.white(left) * np.eye(self.plain.size) + self.factor**2 * np.outer(self.plain, self.plain)
 
     def excess(self, change: Array, white: float) -> float:
         """Mean of f - 1 for a change (taxels,) in N that is nothing else, of this variance from taxel to taxel in N^2."""

@@ -68,9 +68,11 @@ def test_gain_and_stiffness_are_one_factor(table: LumpResponse) -> None:
 def test_both_readings_have_their_noise_and_the_reference_its_errors() -> None:
     """The variance of a change: noise twice, errors of model and reference in root mean squares, one factor."""
     errors = ReferenceErrors(np.array([3.0, 4.0]), 0.1, 0.02, 0.5, 0.3)
-    added = np.array([1.0, -2.0])
-    white = 2 * 0.01 + 0.09 * 2.5 + 4e-4 * 12.5
-    np.testing.assert_allclose(errors.covariance(added), white * np.eye(2) + 0.25 * np.array([[9, 12], [12, 16]]), rtol=1e-14)
+    left = np.array([1.0, -2.0])
+    alone = 2 * 0.01 + 4e-4 * 12.5
+    white = alone + 0.09 * (2.5 - alone)
+    np.testing.assert_allclose(errors.covariance(left), white * np.eye(2) + 0.25 * np.array([[9, 12], [12, 16]]), rtol=1e-14)
+    assert errors.white(np.array([0.1, 0.0])) == errors.white(np.zeros(2)), "errors alone are no body's"
 
 
 def test_the_evidence_is_that_of_the_joint_normal_distribution(table: LumpResponse) -> None:

@@ -83,12 +83,16 @@ def test_two_balls_are_two_places_to_whoever_takes_a_reference(table):
 
 
 def test_one_place_says_that_two_nearer_than_the_taxels_explain_the_readings_better(table):
-    """The one ball lay between both, with a probability of 1 and without a word of the pair, which was found and left out."""
+    """The one ball lay between both, with a probability of 1 and without a word of the pair, which was found and left out.
+
+    Of six noises one hides the pair: errors of 5 % are less than what a pair on the grid of candidates may differ from the true
+    one.
+    """
     near = np.array([[16e-3, 20e-3, 12e-3], [24e-3, 20e-3, 12e-3]])
     estimator = ModelBasedEstimator(model_error=0.05, background_error=0.0)
-    found = estimator.estimate(readings(table, near))
-    assert len(found.inclusions) == 1
-    assert "though two balls explain the readings better than one" in found.reason
+    found = [estimator.estimate(readings(table, near, seed=seed)) for seed in range(1, 7)]
+    assert all(len(one.inclusions) == 1 for one in found)
+    assert sum("though two balls explain the readings better than one" in one.reason for one in found) >= 4
     assert "better" not in estimator.estimate(readings(table, near[:1])).reason
 
 
