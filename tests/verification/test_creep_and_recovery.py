@@ -110,7 +110,7 @@ def test_a_cube_creeps_to_six_under_a_true_stress(cells, one_thread, verificatio
 
     def stretch(part, power):
         """Under the true stress, or with a power of one less under the nominal one, on that part of the modulus."""
-        return brentq(lambda l: 2 * part * modulus * (l**power - l ** (power - 3)) - pull, 1, 100)
+        return brentq(lambda x: 2 * part * modulus * (x**power - x ** (power - 3)) - pull, 1, 100)
 
     reference = np.array([stretch(1.0, 2), 3.803494, stretch(remains, 2)])
     assert reference[-1] == pytest.approx(six, rel=1e-9)

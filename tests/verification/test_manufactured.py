@@ -79,7 +79,8 @@ CASES = {
     "solid-compressible": Manufactured("solid", COMPRESSIBLE, general_solid),
 }
 
-LONG = ("solid-compressible", "plane_strain-compressible")
+LONG = ("solid-compressible", "plane_strain-compressible", "axisymmetric-incompressible")
+"""The last one's orders on coarse meshes are asked beside each of its mutants."""
 
 
 def ladder(exact: Manufactured, *, posed: Manufactured | None = None, first: int = 1) -> list[float]:

@@ -136,7 +136,7 @@ def test_a_slipping_layer_does_not_feel_poissons_ratio():
     assert bonded[0] > 1.02 * bonded[1]
 
 
-@pytest.mark.parametrize("poisson_ratio", [-0.9, 0.0, 0.3, 0.5])
+@pytest.mark.parametrize("poisson_ratio", [-0.9, *(pytest.param(value, marks=pytest.mark.slow) for value in (0.0, 0.3)), 0.5])
 @pytest.mark.parametrize("ratio", RATIOS)
 def test_every_layer_to_twenty_radii_settles(ratio, poisson_ratio):
     for slenderness in (0.1, 3.0, 20.0):

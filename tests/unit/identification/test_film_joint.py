@@ -91,13 +91,17 @@ def test_no_resistances_that_use_up_a_quarter_of_the_line_drift_by_less_than_a_q
     assert 0.26 < min(seen) < 0.28
 
 
-def test_a_looser_creep_nears_the_line_and_leaves_the_printed_creep():
-    kept, weighed = (identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=w) for w in (None, 0.1))
+@pytest.mark.parametrize(
+    ("weight", "errors", "changes"),
+    [(0.3, (0.9, 0.95), (0.035, 0.045)), pytest.param(0.1, (0.0, 0.75), (0.15, 0.2), marks=pytest.mark.slow)],
+)
+def test_a_looser_creep_nears_the_line_and_leaves_the_printed_creep(weight, errors, changes):
+    kept, weighed = (identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=w) for w in (None, weight))
     assert np.abs(kept.creep_changes).max() == 0
-    assert np.abs(weighed.errors).max() < 0.75 * np.abs(kept.errors).max()
-    assert 0.15 < np.abs(weighed.creep_changes).max() < 0.2
+    assert errors[0] < np.abs(weighed.errors).max() / np.abs(kept.errors).max() < errors[1]
+    assert changes[0] < np.abs(weighed.creep_changes).max() < changes[1]
     assert quantities.film_drift(weighed.composite) > quantities.film_drift(kept.composite), "the line is bought with drift"
-    heavy = identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=1e3)
+    heavy = identify_film_jointly(LITERAL, THESIS_LINE, creep_weight=1e2)
     assert heavy.composite.barrier == pytest.approx(kept.composite.barrier, rel=1e-3)
 
 

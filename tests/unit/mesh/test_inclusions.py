@@ -249,6 +249,7 @@ def test_a_surface_turned_inside_out_as_a_whole_is_put_right(tmp_path):
     assert solid.inside(np.array([[0.02, 0.02, 0.01]])).all()
 
 
+@here
 @pytest.mark.parametrize("turn", [(0.0, 0.0, 0.0), (0.4, -0.7, 1.1)])
 def test_the_centre_of_a_surface_is_that_of_its_volume_however_it_is_turned(turn, tmp_path):
     """It was the middle of its bounds, which wanders as a lump turns: in a tetrahedron by a quarter of its sides."""
