@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from lumps import ARTERY, CURVED, LUMP, SIZE, TURNED, interface_nodes, irregular, sides, wedges, write_cells
@@ -24,6 +26,8 @@ from tactsim.outside import processes
 BLOCK = np.array(SIZE)
 COARSE = BlockMeshSettings(size=7e-3, inclusion_size=2.4e-3, growth=0.8)
 PARTIAL = Tube(centre_line=((15e-3, 20e-3, 10e-3), (40e-3, 20e-3, 10e-3)), inner_radius=3e-3, wall=0.8e-3)
+made_in_layers = cache(morphed_block)
+"""The same mesh for the same arguments, shared by the tests that look at it."""
 CASES = {
     "lump": [LUMP],
     "morphed": [LUMP],
@@ -45,7 +49,7 @@ def made(request, tmp_path_factory):
         path = write_cells(tmp_path_factory.mktemp("surface") / "lump.stl", vertices, triangle=faces)
         inclusions = [Surface(path=str(path), unit="mm", translation=(20e-3, 20e-3, 10e-3))]
     if request.param == "morphed":
-        return morphed_block(SIZE, LUMP), inclusions
+        return made_in_layers(SIZE, LUMP), inclusions
     return block_mesh(SIZE, inclusions, COARSE), inclusions
 
 
@@ -145,7 +149,7 @@ def test_the_default_grasp_has_about_forty_thousand_unknowns():
 
 
 def test_a_mesh_that_misses_its_volumes_or_planes_is_refused():
-    block = morphed_block(SIZE, LUMP)
+    block = made_in_layers(SIZE, LUMP)
     check(block, BLOCK)
     missing = block.volumes * [[1.0, 1.0], [1.006, 1.0]]
     with pytest.raises(ConvergenceError, match="volume"):
@@ -239,8 +243,7 @@ def test_a_side_without_cells_is_refused():
 
 
 def test_lumps_moved_have_meshes_of_one_topology_that_repeat():
-    first = morphed_block(SIZE, LUMP)
-    again = morphed_block(SIZE, LUMP)
+    first, again = made_in_layers(SIZE, LUMP), morphed_block(SIZE, LUMP)
     moved = morphed_block(SIZE, Sphere(center=(15e-3, 22e-3, 8e-3), radius=5e-3))
     assert (first.mesh.nodes == again.mesh.nodes).all()
     assert (first.mesh.elements == moved.mesh.elements).all()
