@@ -181,6 +181,7 @@ def creep(times: Array, stress: float = 3.583333333333333e6, c10: float = 1e6, s
     return np.interp(times, grid, stretches)
 
 
+@pytest.mark.slow  # a true stress does the same quickly in test_creep_and_recovery.py
 def test_creep_to_a_stretch_of_six(verification_record):
     result = solution("creeping_cube")
     names = ("extension_at_once", "extension_100s", "extension_1e4s", "extension_end")

@@ -45,8 +45,14 @@ KNOWN = {
 }
 
 
-@pytest.mark.parametrize("relative", [True, False])
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize(
+    ("form", "relative"),
+    [
+        pytest.param(form, relative, marks=() if relative or form in ("5-parameter", "stable-c20") else pytest.mark.slow)
+        for form in FORMS
+        for relative in (True, False)
+    ],
+)
 def test_known_constants_come_back(form, relative):
     known = KNOWN[form]
     fit = fit_uniaxial(curve_of(known, BOTH_SIDES), form, relative=relative)

@@ -142,7 +142,9 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("name", REFUSED)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name == "crossing tubes" else ()) for name in REFUSED]
+)  # which cross in `APART`, too
 def test_what_the_block_cannot_hold_is_refused_with_its_reason(name):
     inclusions, reason = REFUSED[name]
     with pytest.raises(InvalidQuantity, match=reason):
@@ -294,6 +296,7 @@ def test_the_identity_of_a_surface_follows_the_file_and_not_its_name(tmp_path):
     assert surface_of(tmp_path, vertices * 1.01, faces).identity() != identity
 
 
+@here
 def test_files_that_are_no_surfaces_are_refused(tmp_path):
     with pytest.raises(InputError, match=r"\.stl"):
         Surface(path=str(write_cells(tmp_path / "a.vtk", *[irregular()[0]], triangle=irregular()[1])), unit="mm").solids(BLOCK)
