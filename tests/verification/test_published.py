@@ -274,6 +274,7 @@ def twisted(cells: int) -> tuple[float, float]:
     return value(result, "torque"), value(result, "axial_force")
 
 
+@pytest.mark.slow  # a tube of test_sliding_faces.py is twisted quickly
 def test_torsion(verification_record):
     computed = (value(solution("torsion"), "torque"), value(solution("torsion"), "axial_force"))
 

@@ -161,10 +161,11 @@ LONG = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(12e-3, 1e-3, 1e-3))
     ],
     ids=["long", "bent", "large and small"],
 )
-@pytest.mark.parametrize("attempts", [1, pytest.param(graded_module.ATTEMPTS, marks=pytest.mark.slow)])
-def test_a_refusal_names_the_size_of_cells_that_would_suit(inclusions, words, better, attempts, monkeypatch):
+@pytest.mark.parametrize("once", [True, pytest.param(False, marks=pytest.mark.slow)])
+def test_a_refusal_names_the_size_of_cells_that_would_suit(inclusions, words, better, once, monkeypatch):
     """Sizes half or twice as large do suit; where none of those that were tried did, tetrahedra alone are named."""
-    monkeypatch.setattr(graded_module, "ATTEMPTS", attempts)
+    for number in ("ATTEMPTS", "LEAST_LAYERS") if once else ():
+        monkeypatch.setattr(graded_module, number, 1)
     usual = GradedSource().settings(SIZE)
     with pytest.raises(ConvergenceError, match=re.escape(words or "allowed: 0.02; take mesh.kind: tetrahedra")):
         graded_block(SIZE, inclusions, usual)
