@@ -123,7 +123,9 @@ def test_a_turned_ellipsoid_is_followed():
     assert abs(block.volume_errors[1]) < VOLUME_TOLERANCE
 
 
-def test_what_cannot_be_meshed_is_refused_by_name(tmp_path):
+def test_what_cannot_be_meshed_is_refused_by_name(tmp_path, monkeypatch):
+    for number in ("ATTEMPTS", "LEAST_LAYERS"):  # all of them are tried below
+        monkeypatch.setattr(graded_module, number, 1)
     vertices, faces = irregular()
     path = write_cells(tmp_path / "free.stl", vertices, triangle=faces)
     free = Surface(path=str(path), unit="mm", translation=(20e-3, 20e-3, 10e-3))
