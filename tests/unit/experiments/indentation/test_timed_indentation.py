@@ -232,7 +232,8 @@ def test_under_a_force_the_contact_of_tissue_that_relaxes_becomes_softer_where_s
 
 
 def test_with_friction_a_contact_that_stays_as_stiff_would_not_come_to_its_end(monkeypatch):
-    pressed = thin(loading=HELD_FORCE, **STIFF_AT_ONCE | {"contact": Coulomb(friction=0.4)})
+    mesh = MeshSettings(finest=0.6e-3, growth=2.0)
+    pressed = thin(loading=HELD_FORCE, mesh=mesh, contact=Coulomb(friction=0.4), **STIFF_AT_ONCE)
     assert pressed.run().status is Status.CONVERGED
     monkeypatch.setattr(contact_equilibrium, "_softened", lambda *_: None)
     assert pressed.run().status is Status.FAILED
