@@ -449,7 +449,14 @@ def test_columns_closer_than_their_names_have_the_first_and_the_last_named():
     assert named == {"row 1", "row 8", "col. 1", "col. 8"}
 
 
-@pytest.mark.parametrize("size", [(24e-3, 24e-3, 16e-3), (30.5e-3, 32e-3, 20e-3), (24e-3, 30e-3, 40e-3)])
+@pytest.mark.parametrize(
+    "size",
+    [
+        (30.5e-3, 32e-3, 20e-3),
+        pytest.param((24e-3, 24e-3, 16e-3), marks=pytest.mark.slow),
+        pytest.param((24e-3, 30e-3, 40e-3), marks=pytest.mark.slow),
+    ],
+)
 def test_the_words_of_the_views_stand_clear_in_blocks_of_any_shape(size):
     """The title of the front view lay on the name of the axis above it where the top view just filled its place."""
     layout = TaxelLayout(rows=3, columns=4, pitch=6e-3, size=5e-3)
