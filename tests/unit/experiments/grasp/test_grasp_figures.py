@@ -272,7 +272,7 @@ def test_a_small_grasp_is_drawn_as_a_large_one():
     ],
     ids=["three by three", "four by four", "four by five", "eight by eight"],
 )
-@pytest.mark.parametrize("status", [Status.CONVERGED, Status.FAILED])
+@pytest.mark.parametrize("status", [Status.CONVERGED, pytest.param(Status.FAILED, marks=pytest.mark.slow)])
 def test_pressures_fit_into_their_taxels_and_are_legible(layout, form, status):
     """With their unit and the force beneath them those of four by five were written in letters of 4 and 3 points."""
     shape = (layout.rows, layout.columns)
