@@ -224,7 +224,7 @@ def test_a_saved_result_is_the_same_to_the_last_bit(result: ts.Result, tmp_path:
     assert again.save(tmp_path / "first", force=True).is_dir()
 
 
-@pytest.mark.usefixtures("undrawn")
+@pytest.mark.usefixtures("undrawn", "reader_here")
 def test_a_result_is_saved_without_its_fields_if_they_are_not_wanted(result: ts.Result, tmp_path: Path) -> None:
     points, cells = np.zeros((3, 3)), {"triangle": np.array([[0, 1, 2]])}
     frame = FieldFrame(0.0, points, cells, {"displacement [m]": points})
