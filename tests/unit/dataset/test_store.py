@@ -56,10 +56,10 @@ def computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
     compute_once(monkeypatch)
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture
+def whole(kept: Path) -> Path:
     """A store that nothing disturbed."""
-    return small_store(tmp_path_factory.mktemp("whole"))
+    return kept
 
 
 def test_an_interruption_waits_until_a_store_is_made_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
