@@ -86,8 +86,8 @@ def test_what_is_no_data_set_is_reported(kind: str, kept: Path, tmp_path: Path, 
     assert not (tmp_path / "x.h5").exists()
 
 
-def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(tmp_path: Path) -> None:
-    place = small_store(tmp_path)
+def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(store: Path, tmp_path: Path) -> None:
+    place = store
     whole = load(place)
     left_out = "force"
     shutil.rmtree(place / left_out)
@@ -100,8 +100,8 @@ def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(tmp_
 
 
 @pytest.mark.parametrize("listed", [True, False], ids=["with a list of arrays", "without"])
-def test_a_store_from_before_samples_had_a_cost_is_checked_and_gone_on_with(tmp_path: Path, listed: bool) -> None:
-    place = small_store(tmp_path)
+def test_a_store_from_before_samples_had_a_cost_is_checked_and_gone_on_with(store: Path, tmp_path: Path, listed: bool) -> None:
+    place = store
     for name in COST:
         shutil.rmtree(place / name)
     stated = json.loads((place / "zarr.json").read_text())
