@@ -73,8 +73,17 @@ def place_of(folder: Path, number: int, earlier: int = 0) -> Path:
     return place
 
 
+_STEPS: dict[tuple[int, int], int] = {}
+
+
 def steps(folder: Path, samples: int, earlier: int = 0) -> int:
-    """Steps on the disk of an undisturbed run."""
+    """Steps on the disk of an undisturbed run, counted once."""
+    if (samples, earlier) not in _STEPS:
+        _STEPS[samples, earlier] = _counted_steps(folder, samples, earlier)
+    return _STEPS[samples, earlier]
+
+
+def _counted_steps(folder: Path, samples: int, earlier: int) -> int:
     counter = At(0)
     place = place_of(folder, 0, earlier)
     with disk(counter):
