@@ -28,7 +28,7 @@ SAMPLES, MORE = 4, 6
 PLAIN = TEXT.replace("  reading: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}}\n", "").replace(
     "samples_per_specimen: 3", "samples_per_specimen: 2"
 )
-STRIDE, CREATION_STRIDE = 223, 31
+STRIDE, CREATION_STRIDE = 449, 61
 """Steps between those that the quick run tries, of a sweep and of its creation; primes, so that they meet every kind of step."""
 
 

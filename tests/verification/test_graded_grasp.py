@@ -151,5 +151,6 @@ def test_a_fan_in_a_ball_is_felt_as_cells_are(stiffness, size, verification_reco
     verification_record(f"taxels over a fan {stiffness:g} times as stiff as the tissue", found, 0.0, scale=1.0, **known)
 
 
+@pytest.mark.slow
 def test_a_ball_a_tenth_as_stiff_would_be_felt_otherwise():
     assert apart(closed_on(HARD / 10, SMALL), closed_on(HARD, SMALL, filling="fan")) > SAME

@@ -533,7 +533,7 @@ def sender(port: int, count: int, rate: float = 20.0) -> Iterator[None]:
         thread.join()
 
 
-@pytest.mark.parametrize("count", [3, 16])
+@pytest.mark.parametrize("count", [3, pytest.param(16, marks=pytest.mark.slow)])
 def test_a_live_feed_is_drawn_and_its_title_stays_text(browser: webdriver.Chrome, tmp_path: Path, count: int) -> None:
     with socket.socket() as found:
         found.bind(("127.0.0.1", 0))

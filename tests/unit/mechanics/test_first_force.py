@@ -75,13 +75,17 @@ def leaning(cells: tuple[int, int, int]) -> Grasp:
     )
 
 
-@pytest.mark.parametrize("cells", [(4, 3, 2), pytest.param((4, 4, 3), marks=pytest.mark.slow)])
-def test_forces_found_under_a_displacement_are_those_that_a_force_begins_with(
-    cells: tuple[int, int, int], monkeypatch: pytest.MonkeyPatch
-):
-    """10 systems instead of 19, and on finer cells 8 instead of 21."""
+@pytest.mark.parametrize(("cells", "systems"), [((4, 3, 2), 13), pytest.param((4, 4, 3), 14, marks=pytest.mark.slow)])
+def test_forces_found_under_a_displacement_are_those_that_a_force_begins_with(cells: tuple[int, int, int], systems: int):
+    """10 systems, and 8 on finer cells; two thirds of those without these forces are allowed."""
     usual = leaning(cells).run()
     assert usual.status is Status.CONVERGED
-    monkeypatch.setattr(contact_equilibrium, "expected", lambda contact, distance: contact)  # the mutant: forgotten
-    forgotten = leaning(cells).run()
-    assert usual.steps[0].newton_iterations < 0.7 * forgotten.steps[0].newton_iterations
+    assert usual.steps[0].newton_iterations <= systems
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("cells", "systems"), [((4, 3, 2), 13), ((4, 4, 3), 14)])
+def test_a_force_that_begins_without_them_takes_more(cells: tuple[int, int, int], systems: int, monkeypatch: pytest.MonkeyPatch):
+    """The mutant of the test above: 19 and 21 systems."""
+    monkeypatch.setattr(contact_equilibrium, "expected", lambda contact, distance: contact)
+    assert leaning(cells).run().steps[0].newton_iterations > systems

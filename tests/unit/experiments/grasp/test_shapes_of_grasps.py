@@ -47,7 +47,7 @@ SHAPES = {
     "one taxel": Shape((20, 20, 10), TaxelLayout(rows=1, columns=1), (12, 8, 6), 1.0),
 }
 
-QUICK = ("wide and thin", "tall", "many taxels")
+QUICK = ("wide and thin", "many taxels")
 """Shapes that the quick tests draw: the widest, the highest and the one of most words."""
 
 
