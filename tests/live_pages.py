@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import atexit
 import itertools
 import json
+import shutil
+import tempfile
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from unittest.mock import patch
 
@@ -111,6 +115,15 @@ def localized_folder(place: Path) -> Path:
 
 def made_up_store(folder: Path, *, done: int = 4) -> Path:
     """A data set of six grasps that nobody computed: the first are done, the next failed, the last is pending."""
+    return Path(shutil.copytree(_written_store(done), folder / "lumps.zarr"))
+
+
+@cache
+def _written_store(done: int) -> Path:
+    """Such a data set, written once in a process; tests have copies."""
+    kept = tempfile.TemporaryDirectory(prefix="tactsim-pages-")
+    atexit.register(kept.cleanup)
+    folder = Path(kept.name)
     file, place, numbers = folder / "sweep.yaml", folder / "lumps.zarr", itertools.count()
     file.write_text(SWEEP, encoding="utf-8")
 

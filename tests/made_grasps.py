@@ -8,11 +8,11 @@ from pathlib import Path
 
 import numpy as np
 from scenes import grasp_scene
+from sweeps import load_once
 
 from tactsim.dataset.ranking.reference import PlainGrasp
 from tactsim.dataset.ranking.samples import SPHERE, JudgedSamples, Truth
 from tactsim.dataset.running.resuming import opened_run
-from tactsim.dataset.sampling.sweep import load_sweep
 from tactsim.dataset.store.arrays import DONE
 from tactsim.dataset.store.blocks import checksum
 from tactsim.dataset.store.opening import Store
@@ -56,6 +56,8 @@ experiment:
   time: {steps: 1}
 sweep: {samples: 40, seed: 3, splits: {train: 0.75, validation: 0.0}}
 """
+FEW = TEXT.replace("samples: 40", "samples: 8")
+"""The same with fewer samples, for what one of them shows."""
 READOUT = "  time: {steps: 1}\n  readout: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}, seed: 4}\n"
 
 
@@ -163,13 +165,14 @@ def sum_up(place: Path) -> None:
 
 
 def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: bool = True, training: int = 30) -> Path:
-    """A store whose forty samples hold the made-up grasps; the first of them are for training."""
+    """A store whose samples hold the made-up grasps; the first of them are for training."""
     path = folder / "sweep.yaml"
     path.write_text(text, encoding="utf-8")
     place = folder / "made.zarr"
-    with opened_run(load_sweep(path), place, resume=False, accept_changes=False):
+    with opened_run(load_once(path), place, resume=False, accept_changes=False):
         pass
-    store, grasps = Store.open(place, writing=True), truths(40)
+    store = Store.open(place, writing=True)
+    grasps = truths(count := store.samples)
     if not done:
         return place
     forces = made_forces(grasps, table)
@@ -181,11 +184,11 @@ def made_store(folder: Path, table: LumpResponse, text: str = TEXT, *, done: boo
         "inclusion_center": [[truth.center or [np.nan] * 3] for truth in grasps],
         "inclusion_radius": [[truth.radius or np.nan] for truth in grasps],
         "inclusion_contrast": [[truth.contrast or np.nan] for truth in grasps],
-        "time_s": np.ones((40, 1)),
+        "time_s": np.ones((count, 1)),
         "taxel_force": forces[:, None],
-        "split": np.where(np.arange(40) < training, 0, 2),
-        "specimen": np.arange(40) // store.attributes["samples_per_specimen"],
-        "status": np.full(40, DONE),
+        "split": np.where(np.arange(count) < training, 0, 2),
+        "specimen": np.arange(count) // store.attributes["samples_per_specimen"],
+        "status": np.full(count, DONE),
     }
     if "read_force" in store.described:
         values["read_force"] = 0.8 * forces[:, None]

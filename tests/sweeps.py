@@ -15,8 +15,10 @@ from tactsim.dataset.running.computing import computed
 from tactsim.dataset.running.executors import Executor, TaskOutcome
 from tactsim.dataset.running.resuming import opened_run
 from tactsim.dataset.running.run import SweepRun
+from tactsim.dataset.sampling import stored
+from tactsim.dataset.sampling import sweep as sampled
 from tactsim.dataset.sampling.layout import layout_of
-from tactsim.dataset.sampling.sweep import Sweep, load_sweep
+from tactsim.dataset.sampling.sweep import Sweep, load_sweep, sweep_of_text
 from tactsim.dataset.store.opening import Store
 
 TEXT = """\
@@ -76,11 +78,33 @@ class Inline(Executor):
         self.tasks = []
 
 
+@cache
+def _computed(text: str, samples: tuple[int, ...]) -> bytes:
+    return computing.computed(text, samples)
+
+
+_LOADED: dict[tuple[object, ...], Sweep] = {}
+
+
+def load_once(path: Path, overrides: tuple[str, ...] = (), samples: int | None = None, **_: object) -> Sweep:
+    """``load_sweep`` of a file that names no others; a text is read and laid out once, wherever it lies."""
+    key = (path.read_text(encoding="utf-8"), overrides, samples)
+    if key not in _LOADED:
+        _LOADED[key] = load_sweep(path, overrides, samples)
+    return _LOADED[key]
+
+
+def compute_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The same samples are computed here only once, and the texts of stores are read once, for sweeps that name no files."""
+    monkeypatch.setattr("sweeps.computed", lambda text, samples: _computed(text, tuple(samples)))
+    monkeypatch.setattr(stored, "sweep_of_text", lambda text, folder: sweep_of_text(text))
+
+
 def compute_once_here(monkeypatch: pytest.MonkeyPatch) -> None:
-    """``tactsim sweep`` computes in this process, and the same samples only once in a test."""
-    known = cache(lambda text, samples: computing.computed(text, samples))
-    monkeypatch.setattr("sweeps.computed", lambda text, samples: known(text, tuple(samples)))
+    """``tactsim sweep`` too computes in this process, and once."""
+    compute_once(monkeypatch)
     monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+    monkeypatch.setattr(sampled, "load_sweep", load_once)
 
 
 def sweep_file(folder: Path, text: str = TEXT) -> Path:

@@ -48,6 +48,7 @@ def test_the_order_lists_every_example() -> None:
     assert sorted(ast.literal_eval(order)) == [name_of(path) for path in SCRIPTS]
 
 
+@pytest.mark.usefixtures("reader_here")
 @pytest.mark.parametrize(
     "folder", sorted(path.parent for path in GALLERY.glob("stored/*/result.json")), ids=lambda path: path.name
 )

@@ -25,6 +25,7 @@ from tactsim.dataset.running.executors import LocalWorkers
 from tactsim.errors import CaseError, InvalidQuantity, StorageError, UnknownName
 from tactsim.experiments.grasp.scene import ReadGrasp
 from tactsim.interfaces.taxel_layout import JAWS
+from tactsim.plotting import canvas
 from tactsim.results import FieldFrame
 from tactsim.sensors.films.film import Film
 from tactsim.shipped import shipped_cases
@@ -57,6 +58,23 @@ def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
     """Sweeps compute here and draw nothing: a worker takes seconds to begin, and one test has a real one and the figures."""
     monkeypatch.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep))
     monkeypatch.setattr(dataset_card, "card_figures", lambda store: {})
+
+
+@pytest.fixture
+def undrawn(monkeypatch: pytest.MonkeyPatch) -> None:
+    """The figures that are saved beside a result are empty files."""
+    monkeypatch.setattr(canvas, "encoded", lambda figure, form: b"")
+
+
+@pytest.fixture(scope="module")
+def annuli(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data set of two samples that no test changes."""
+    place = tmp_path_factory.mktemp("data") / "annuli.zarr"
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep))
+        patched.setattr(dataset_card, "card_figures", lambda store: {})
+        ts.sweep(VARIED, samples=2, out=place, workers=1, splits={"train": 1.0, "validation": 0.0})
+    return place
 
 
 @pytest.fixture
@@ -193,6 +211,7 @@ def test_the_history_is_a_dataset_with_units(result: ts.Result) -> None:
     assert history.sizes == {"step": len(result.steps)}
 
 
+@pytest.mark.usefixtures("undrawn")
 def test_a_saved_result_is_the_same_to_the_last_bit(result: ts.Result, tmp_path: Path) -> None:
     again = ts.load_result(result.save(tmp_path / "first"))
     assert again == result
@@ -205,6 +224,7 @@ def test_a_saved_result_is_the_same_to_the_last_bit(result: ts.Result, tmp_path:
     assert again.save(tmp_path / "first", force=True).is_dir()
 
 
+@pytest.mark.usefixtures("undrawn", "reader_here")
 def test_a_result_is_saved_without_its_fields_if_they_are_not_wanted(result: ts.Result, tmp_path: Path) -> None:
     points, cells = np.zeros((3, 3)), {"triangle": np.array([[0, 1, 2]])}
     frame = FieldFrame(0.0, points, cells, {"displacement [m]": points})
@@ -529,12 +549,12 @@ def test_an_interrupted_sweep_says_what_is_kept_and_how_to_go_on(tmp_path: Path,
     how = {"out": tmp_path / "annuli.zarr", "workers": 1, "splits": {"train": 0.5, "validation": 0.5}}
     with monkeypatch.context() as patched:
         patched.setattr(LocalWorkers, "of", lambda sweep, workers: Inline(sweep, stop_after=1))
-        with pytest.raises(KeyboardInterrupt, match=r"^\d+ of 90 samples are kept in .*annuli\.zarr; go on with resume=True$"):
-            ts.sweep(varied, samples=90, **how)
-    assert 0 < ts.load_data(how["out"]).sizes["sample"] < 90
-    with pytest.raises(StorageError, match="has 90 samples, 8 would lose some; ask for at least as many, or choose another"):
+        with pytest.raises(KeyboardInterrupt, match=r"^\d+ of 12 samples are kept in .*annuli\.zarr; go on with resume=True$"):
+            ts.sweep(varied, samples=12, **how)
+    assert 0 < ts.load_data(how["out"]).sizes["sample"] < 12
+    with pytest.raises(StorageError, match="has 12 samples, 8 would lose some; ask for at least as many, or choose another"):
         ts.sweep(varied, samples=8, resume=True, **how)
-    assert ts.sweep(varied, samples=90, resume=True, **how).sizes["sample"] == 90
+    assert ts.sweep(varied, samples=12, resume=True, **how).sizes["sample"] == 12
 
 
 @pytest.mark.usefixtures("in_this_process")
@@ -544,7 +564,7 @@ def test_a_second_interruption_of_a_sweep_says_how_to_go_on_too(
 ) -> None:
     """It ends the sweep at once, wherever that was, and the samples that were done are there."""
     varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
-    how = {"samples": 90, "out": tmp_path / "annuli.zarr", "workers": 1, "splits": {"train": 0.5, "validation": 0.5}}
+    how = {"samples": 12, "out": tmp_path / "annuli.zarr", "workers": 1, "splits": {"train": 0.5, "validation": 0.5}}
 
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
@@ -559,7 +579,7 @@ def test_a_second_interruption_of_a_sweep_says_how_to_go_on_too(
         with pytest.raises(KeyboardInterrupt, match=r"^the samples .* kept in .*\.zarr; go on with resume=True$") as stopped:
             ts.sweep(varied, **how)
     assert stopped.value.__suppress_context__, "a notebook shows one traceback, not those of both interruptions"
-    assert ts.sweep(varied, resume=True, **how).sizes["sample"] == 90
+    assert ts.sweep(varied, resume=True, **how).sizes["sample"] == 12
 
 
 @pytest.mark.usefixtures("in_this_process")
@@ -573,7 +593,6 @@ def test_a_sweep_goes_on_with_changed_code_if_that_is_accepted(tmp_path: Path, m
     assert ts.sweep(varied, resume=True, accept_changed_code=True, **how).sizes["sample"] == 2
 
 
-@pytest.mark.usefixtures("in_this_process")
 @pytest.mark.parametrize(
     ("package", "extra", "job"),
     [
@@ -583,14 +602,12 @@ def test_a_sweep_goes_on_with_changed_code_if_that_is_accepted(tmp_path: Path, m
     ],
 )
 def test_a_missing_extra_is_named_with_what_installs_it(
-    package: str, extra: str, job: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    package: str, extra: str, job: Any, annuli: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """In a program as in the shell, also where the job imports it late."""
-    varied = ts.ClosedForm.example().vary({"outer_radius": ts.uniform("2 mm", "4 mm"), "points": 5})
-    ts.sweep(varied, samples=2, out=tmp_path / "annuli.zarr", workers=1, splits={"train": 1.0, "validation": 0.0})
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ts.InputError, match=rf"{package}, needed for .*: pip install 'tactsim\[{extra}\]'$"):
-        job(tmp_path / "annuli.zarr")
+        job(annuli)
 
 
 def test_a_sweep_refuses_what_its_workers_cannot_load_before_it_makes_a_store(tmp_path: Path) -> None:
@@ -660,6 +677,7 @@ def test_a_value_of_another_type_is_refused_in_words(call: Any, needed: str) -> 
         call(ts.ClosedForm.example().run())
 
 
+@pytest.mark.usefixtures("in_this_process")
 def test_a_case_varies_at_the_key_paths_of_its_file(tmp_path: Path) -> None:
     case = ts.load_case("annulus_dynamic_load", {"title": "Presses", "output.fields": "none", "experiment.points": 5})
     varied = case.vary({"experiment.outer_radius": ts.uniform("2 mm", "4 mm")})

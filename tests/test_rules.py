@@ -92,12 +92,19 @@ def functions(*, public: bool = False) -> list[Definition]:
     ]
 
 
-def own_nodes(function: ast.AST) -> Iterator[ast.AST]:
+@cache
+def own_nodes(function: ast.AST) -> tuple[ast.AST, ...]:
     """The nodes of a function without those of functions and classes within it."""
-    for child in ast.iter_child_nodes(function):
-        if not isinstance(child, (*FUNCTIONS, ast.ClassDef, ast.Lambda)):
-            yield child
-            yield from own_nodes(child)
+    own, waiting = [], [function]
+    while waiting:
+        inner = [
+            child
+            for child in ast.iter_child_nodes(waiting.pop())
+            if not isinstance(child, (*FUNCTIONS, ast.ClassDef, ast.Lambda))
+        ]
+        own += inner
+        waiting += inner
+    return tuple(own)
 
 
 def length(function: Function) -> int:
@@ -301,6 +308,7 @@ def errors_left_unsaid() -> list[str]:
     ]
 
 
+@cache
 def errors_raised(function: Function) -> set[str]:
     """Names of errors that leave a function where it raises them itself: not those that it catches again."""
     tries = [node for node in own_nodes(function) if isinstance(node, ast.Try) and node.handlers]
@@ -358,8 +366,8 @@ def household_names() -> list[str]:
         place = path.relative_to(ROOT).as_posix()
         words = HOUSEHOLD | (HOUSEHOLD_IN_ENGINE if place.startswith((*ENGINE, "tactsim/mechanics/")) else set())
         for node in nodes(path):
-            names = (getattr(node, field, None) for field in ("name", "id", "attr", "arg"))
-            broken |= {f"{place}: {name}" for name in names if isinstance(name, str) and name in words}
+            names = {name for name in map(vars(node).get, ("name", "id", "attr", "arg")) if isinstance(name, str)}
+            broken |= {f"{place}: {name}" for name in names & words}
     return sorted(broken - KEYS)
 
 

@@ -9,7 +9,7 @@ import scipy
 
 from tactsim.array import Array
 from tactsim.errors import ConvergenceError, InvalidQuantity
-from tactsim.identification.film_line import ACCURATE_FORCES, LineProjection, projected_on_line
+from tactsim.identification.film_line import ACCURATE_FORCES, projected_on_line
 from tactsim.sensors.electronics.calibration import LinearCalibration
 from tactsim.sensors.electronics.film_calibration import LINE_POINTS
 from tactsim.sensors.films.composite import CREEP_COEFFICIENTS, Composite
@@ -77,18 +77,17 @@ def identify_film_jointly(
         raise InvalidQuantity(f"creep_weight is {creep_weight}; allowed: finite and >= 0, or None for the creep as given")
     count = 1 if creep_weight is None else 1 + 2 * len(CREEP_COEFFICIENTS)
 
-    def projected(logarithms: Array) -> LineProjection:
-        return projected_on_line(changed(composite, logarithms), line, forces)
-
     def residuals(logarithms: Array) -> Array:
-        parts = [projected(logarithms).errors / np.sqrt(LINE_POINTS)]
+        film = changed(composite, logarithms)
+        parts = [projected_on_line(film, line, forces).errors / np.sqrt(LINE_POINTS)]
         if creep_weight:
-            creep = np.log1p(_creep_changes(composite, changed(composite, logarithms)))
+            creep = np.log1p(_creep_changes(composite, film))
             parts.append(creep_weight * creep.ravel() / np.sqrt(creep.size))
         return np.concatenate(parts)
 
     logarithms = _least(residuals, count)
-    projection, film = projected(logarithms), changed(composite, logarithms)
+    film = changed(composite, logarithms)
+    projection = projected_on_line(film, line, forces)
     initial, contact = projection.resistances.tolist()
     if min(initial, contact) <= 0:
         raise InvalidQuantity(

@@ -15,6 +15,7 @@ DEEPEST = 32
 """Lists and mappings inside each other; those of a result are at most eight deep."""
 LONGEST_INTEGER = 40
 """Digits: more than any count or seed has, and few enough to become a float."""
+_NESTING = (dict, list)
 
 
 def read_json(text: str, name: str, *, deepest: int = DEEPEST) -> Any:
@@ -43,10 +44,10 @@ def read_json(text: str, name: str, *, deepest: int = DEEPEST) -> Any:
 
 
 def _check_depth(content: Any, name: str, deepest: int) -> None:
-    level = [content]
+    level = [content] if isinstance(content, _NESTING) else []
     for _ in range(deepest):
-        inner = [value.values() if isinstance(value, dict) else value for value in level if isinstance(value, dict | list)]
-        level = [item for items in inner for item in items if isinstance(item, dict | list)]
+        inner = [value.values() if isinstance(value, dict) else value for value in level]
+        level = [item for items in inner for item in items if isinstance(item, _NESTING)]
         if not level:
             return
     raise _too_deep(name, deepest)

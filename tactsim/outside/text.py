@@ -18,14 +18,13 @@ def one_line(text: object, longest: int = LONGEST_LINE) -> str:
 
     Long text is cut in the middle, where a name or a reason says least.
     """
-    plain = "".join(_spelled(character) for character in _bounded(str(text), longest))
-    return _bounded(plain, longest)
+    return _bounded(_harmless(_bounded(str(text), longest), frozenset()), longest)
 
 
 def printable(text: str) -> str:
     """Several lines as they may go to a terminal or a log: line breaks and tabs stay, all other control characters are spelled
     out."""
-    return text if text.isascii() and text.isprintable() else "".join(_spelled(c, _KEPT) for c in text)
+    return _harmless(text, _KEPT)
 
 
 def first_names(names: Sequence[object], most: int) -> str:
@@ -60,7 +59,11 @@ def markdown_row(cells: Iterable[object]) -> str:
     return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
 
 
-def _spelled(character: str, kept: frozenset[str] = frozenset()) -> str:
+def _harmless(text: str, kept: frozenset[str]) -> str:
+    return text if text.isascii() and text.isprintable() else "".join(_spelled(character, kept) for character in text)
+
+
+def _spelled(character: str, kept: frozenset[str]) -> str:
     if character in kept or unicodedata.category(character) not in _ESCAPED:
         return character
     return character.encode("unicode_escape").decode("ascii")

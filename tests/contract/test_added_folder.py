@@ -17,11 +17,11 @@ from typing import Any
 
 import grimp
 import pytest
+from fork_server import forked_python
 from sweeps import content, small_store
 
 import tactsim.experiments
 from tactsim import kinds_in_source, registry
-from tactsim.case.json_schema import case_json_schema
 from tactsim.cli.entry import main
 from tactsim.dataset.sampling.json_schema import sweep_json_schema
 from tactsim.errors import AmbiguousKind, CaseError
@@ -147,6 +147,14 @@ experiment:
   loading: {control: displacement, pieces: [{kind: ramp, to: 0.1 mm, duration: 1 s}]}
   points: 5
 """
+ANEW = """
+import sys, warnings
+del sys.argv[1]
+for name in [name for name in sys.modules if name.partition(".")[0] == "tactsim"]:
+    del sys.modules[name]
+warnings.simplefilter("error")
+"""
+"""In a process with all libraries loaded: the package is loaded anew, from the working folder."""
 WITHOUT = """
 import importlib, json, pkgutil, sys
 import tactsim
@@ -176,14 +184,16 @@ experiment:
 sweep: {samples: 2}
 """
 ALONE = """
-import json, sys
+import json
 from contextlib import redirect_stderr
-import tactsim
+import sweeps, tactsim, tactsim.outside.worker_pool
+from tactsim.cli import command_sweep
 from tactsim.cli.entry import main
 
+command_sweep._executor = lambda sweep, arguments: sweeps.Inline(sweep)
 runs = [["run", "case.yaml", "--out", out, "--quiet"] for out in ("first", "second")]
 shown = [["compare", "first", "second"], ["list", "kinds"], ["schema", "--out", "case.schema.json"]]
-data = [["sweep", "sweep.yaml", "--out", "annuli.zarr", "--workers", "1", "--quiet"], ["data", "info", "annuli.zarr"]]
+data = [["sweep", "sweep.yaml", "--out", "annuli.zarr", "--quiet"], ["data", "info", "annuli.zarr"]]
 drawn = [["show", place, "--save", place.partition(".")[0] + ".png"] for place in ("first", "annuli.zarr")]
 tables = [["validate", "equation_4_7_1", "--out", "report"]]
 codes = {" ".join(command): main(command) for command in (*runs, *shown, *data, *drawn, *tables)}
@@ -244,13 +254,11 @@ def test_a_folder_is_all_that_a_kind_needs(spring: Path, tmp_path: Path, capsys:
 
 def test_a_folder_that_is_deleted_is_known_no_more(spring: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert all("spring" in kinds(base) for base in POINTS)
-    for schema in (case_json_schema, sweep_json_schema):
-        assert NAMED in json.dumps(schema())
+    assert NAMED in json.dumps(sweep_json_schema()["properties"]["experiment"])
     shutil.rmtree(spring)
     start_anew()
     assert not any("spring" in kinds(base) for base in POINTS)
-    for schema in (case_json_schema, sweep_json_schema):
-        assert NAMED not in json.dumps(schema())
+    assert NAMED not in json.dumps(sweep_json_schema())  # made of the schema of cases
     code, out = run_case(tmp_path)
     assert code == CaseError.exit_code
     assert "'spring'" in capsys.readouterr().err
@@ -308,7 +316,7 @@ def test_a_folder_that_the_tiers_do_not_name_builds_on_no_other() -> None:
 
 def answer_of(folder: Path, script: str, *arguments: str) -> dict[str, Any]:
     """What a script prints last, run with the package in a folder."""
-    command = [sys.executable, "-W", "error", "-c", script, *arguments]
+    command = [*forked_python(), ANEW + script, *arguments]
     environment = {**os.environ, "PYTHONPATH": str(folder), "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(command, capture_output=True, text=True, env=environment, cwd=folder, check=False)
     assert done.returncode == 0, done.stderr

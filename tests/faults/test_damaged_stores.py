@@ -15,9 +15,9 @@ from typing import Any
 import numpy as np
 import pytest
 import xarray
-from sweeps import TEXT, Inline, assert_same, run_sweep, small_store, sweep_file
+from sweeps import TEXT, assert_same, compute_once_here, run_sweep, small_store, sweep_file
 
-from tactsim.cli import command_sweep, main
+from tactsim.cli import main
 from tactsim.dataset import TorchSamples, load
 from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
@@ -37,8 +37,8 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(autouse=True)
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sweeps start no processes and draw nothing."""
-    monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+    """Sweeps start no processes and draw nothing, and samples are computed once."""
+    compute_once_here(monkeypatch)
     monkeypatch.setattr(dataset_card, "card_figures", lambda store: {})
 
 
@@ -396,7 +396,7 @@ def test_pipes_in_a_store_do_not_block(name: str, store: Path, tmp_path: Path, c
     os.mkfifo(store / name)
     for command in (["data", "check"], ["data", "info"], ["show"]):
         assert main([*command, str(store)]) in (0, 4, 5)
-    main(["data", "export", str(store), "--to", str(tmp_path / "shards")])
+    main(["data", "export", str(store), "--to", str(tmp_path / "shards"), "--variables", "force"])
     assert resumed(store, tmp_path, capsys)[0] == 5
     assert "internal error" not in capsys.readouterr().err
 

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import pytest
 from pretence import PNG
-from sweeps import Inline, sweep_file
+from sweeps import compute_once_here, sweep_file
 
-from tactsim.cli import command_sweep, main
+from tactsim.cli import main
 from tactsim.dataset.checking import check
 from tactsim.dataset.figures import card as dataset_card
 from tactsim.storage.own_files import OWN_LIST
@@ -18,8 +18,8 @@ from tactsim.storage.own_files import OWN_LIST
 
 @pytest.fixture(autouse=True)
 def in_this_process(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Sweeps start no processes, and the figure is a dot."""
-    monkeypatch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+    """Sweeps start no processes, samples are computed once, and the figure is a dot."""
+    compute_once_here(monkeypatch)
     monkeypatch.setattr(dataset_card, "card_figures", lambda store: {"spread.png": lambda: PNG})
 
 
@@ -33,7 +33,7 @@ def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A store of three samples that stays as it is."""
     folder = tmp_path_factory.mktemp("kept")
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(command_sweep, "_executor", lambda sweep, arguments: Inline(sweep))
+        compute_once_here(patch)
         patch.setattr(dataset_card, "card_figures", lambda store: {"spread.png": lambda: PNG})
         assert swept(folder, 3) == 0
     return folder / "s.zarr"

@@ -28,7 +28,7 @@ SAMPLES, MORE = 4, 6
 PLAIN = TEXT.replace("  reading: {chain: {sampling_rate: 200 Hz, noise: {white: 1 mV}}}\n", "").replace(
     "samples_per_specimen: 3", "samples_per_specimen: 2"
 )
-STRIDE, CREATION_STRIDE = 223, 31
+STRIDE, CREATION_STRIDE = 449, 61
 """Steps between those that the quick run tries, of a sweep and of its creation; primes, so that they meet every kind of step."""
 
 
@@ -73,8 +73,17 @@ def place_of(folder: Path, number: int, earlier: int = 0) -> Path:
     return place
 
 
+_STEPS: dict[tuple[int, int], int] = {}
+
+
 def steps(folder: Path, samples: int, earlier: int = 0) -> int:
-    """Steps on the disk of an undisturbed run."""
+    """Steps on the disk of an undisturbed run, counted once."""
+    if (samples, earlier) not in _STEPS:
+        _STEPS[samples, earlier] = _counted_steps(folder, samples, earlier)
+    return _STEPS[samples, earlier]
+
+
+def _counted_steps(folder: Path, samples: int, earlier: int) -> int:
     counter = At(0)
     place = place_of(folder, 0, earlier)
     with disk(counter):

@@ -53,10 +53,11 @@ def test_the_harness_sees_the_steps(tmp_path: Path) -> None:
 @pytest.mark.parametrize("earlier", [False, True])
 def test_a_death_at_any_step_leaves_the_old_or_the_new(tmp_path: Path, earlier: bool) -> None:
     seen = set()
+    write(tmp_path / "earlier" / "out", "old")
     for number in range(1, steps_of_one_writing(tmp_path / "count") + 1):
         place = tmp_path / str(number) / "out"
         if earlier:
-            write(place, "old")
+            shutil.copytree(tmp_path / "earlier", place.parent)
         with suppress(Killed), disk(At(number, Killed, for_good=True)):
             write(place, "new")
         visible = read_result(place, fields=False).case_id if place.exists() else None
@@ -76,10 +77,11 @@ def ids_beside(place: Path) -> set[str]:
 
 
 def test_a_death_at_any_step_keeps_a_result_without_a_manifest(tmp_path: Path) -> None:
+    write(tmp_path / "earlier" / "out", "old")
+    (tmp_path / "earlier" / "out" / MANIFEST).unlink()
     for number in range(1, steps_of_one_writing(tmp_path / "count") + 5):
         place = tmp_path / str(number) / "out"
-        write(place, "old")
-        (place / MANIFEST).unlink()
+        shutil.copytree(tmp_path / "earlier", place.parent)
         with suppress(Killed), disk(At(number, Killed, for_good=True)):
             write(place, "new")
         assert "old" in ids_beside(place)
@@ -96,14 +98,14 @@ def test_a_death_at_any_step_keeps_the_result_that_was_kept_before(tmp_path: Pat
             folder.publish(keep_earlier=True)
 
     counter = At(0)
-    for case_id in ("0", "1"):
-        write_beside(tmp_path / "count" / "out", case_id)
+    for case_id in ("older", "old"):
+        write_beside(tmp_path / "earlier" / "out", case_id)
+    shutil.copytree(tmp_path / "earlier", tmp_path / "count")
     with disk(counter):
         write_beside(tmp_path / "count" / "out", "2")
     for number in range(1, counter.count + 1):
         place = tmp_path / str(number) / "out"
-        write_beside(place, "older")
-        write_beside(place, "old")
+        shutil.copytree(tmp_path / "earlier", place.parent)
         with suppress(Killed), disk(At(number, Killed, for_good=True)):
             write_beside(place, "new")
         assert "old" in ids_beside(place)
@@ -123,8 +125,23 @@ def test_what_an_earlier_version_left_in_the_exchange_is_kept(tmp_path: Path, ke
     assert set(os.listdir(tmp_path)) == {"out", "out.earlier"}
 
 
-@pytest.mark.parametrize("number", range(1, MOST_STEPS))
-@pytest.mark.parametrize("code", [errno.ENOSPC, errno.EROFS, errno.EIO], ids=errno.errorcode.get)
+OTHERS_AT = range(1, MOST_STEPS, 8)
+"""Steps at which the quick run tries the two other reasons, which go the same way as a full disk."""
+
+
+@pytest.mark.parametrize(
+    ("code", "number"),
+    [
+        pytest.param(
+            code,
+            number,
+            id=f"{errno.errorcode[code]}-{number}",
+            marks=() if code == errno.ENOSPC or number in OTHERS_AT else pytest.mark.slow,
+        )
+        for code in (errno.ENOSPC, errno.EROFS, errno.EIO)
+        for number in range(1, MOST_STEPS)
+    ],
+)
 def test_a_refusing_disk_loses_nothing(tmp_path: Path, number: int, code: int) -> None:
     place = tmp_path / "out"
     write(place, "old")

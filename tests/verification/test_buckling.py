@@ -75,7 +75,10 @@ def test_a_small_load_across_leads_to_the_buckled_column(one_thread, verificatio
     assert_kills(check, stiffer=(pressed(c10=1.05 * C10),), straight=(pressed(across=0.0),))
 
 
-@pytest.mark.parametrize(("share", "motions"), [(1 - ABOUT_EULER, ""), (1 + ABOUT_EULER, "2 motions of the body lower")])
+@pytest.mark.parametrize(
+    ("share", "motions"),
+    [pytest.param(1 - ABOUT_EULER, "", marks=pytest.mark.slow), (1 + ABOUT_EULER, "2 motions of the body lower")],
+)
 def test_a_square_column_buckles_either_way(share, motions, one_thread, verification_record):
     load = {"kind": "traction", "z": -share * euler(6 * C10 * WIDTH**4 / 12, 2 * HEIGHT) / WIDTH**2}
     assert [motions in warning for warning in warned(column("3d", **load))] == [True] * bool(motions)

@@ -116,7 +116,9 @@ def test_graded_mesh_reaches_the_extrapolated_rise(verification_record):
     )
 
 
-@pytest.mark.parametrize("wrong", [SOFT_VOLUME, SMALL_STRAIN], ids=["soft_volume", "small_strain"])
+@pytest.mark.parametrize(
+    "wrong", [pytest.param(SOFT_VOLUME, id="soft_volume", marks=pytest.mark.slow), pytest.param(SMALL_STRAIN, id="small_strain")]
+)
 def test_a_wrong_material_is_seen(wrong):
     """By the rise within 0.1 % on the graded mesh, and by the printed digits on a coarse one."""
     graded = quadratic(graded_mesh(0.1))

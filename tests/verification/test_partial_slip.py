@@ -49,10 +49,10 @@ def slipped(normal: float, shear: float, *, radius: float = RADIUS, remains: flo
     return elliptic(PLACES, a, limit) - (elliptic(PLACES, share * a, share * limit) if share else 0.0)
 
 
-def pushed() -> tuple[float, float, Array]:
-    """Normal and shear force in N/m, and the measured lag at ``PLACES`` in m, even in x."""
+def pushed(steps: int, beyond: int) -> tuple[float, float, Array]:
+    """Normal and shear force in N/m, and the measured lag at ``PLACES`` in m, even in x; ``beyond`` are the growing cells."""
     wide, high = MIDDLE - FINE, HEIGHT - FINE
-    inward, outward = ({"length": wide, "cells": 14, "ratio": ratio} for ratio in (1 / 80, 80))
+    inward, outward = ({"length": wide, "cells": beyond, "ratio": ratio} for ratio in (1 / 80, 80))
     surface = {"length": 2 * FINE, "cells": 2 * CELLS}
     ramp, hold = {"kind": "ramp", "to": 1.0, "duration": 1.0}, {"kind": "hold", "duration": 1.0}
     signed = [0.0, *PLACES, *-PLACES]
@@ -67,7 +67,7 @@ def pushed() -> tuple[float, float, Array]:
         geometry={
             "kind": "block",
             "x": [inward, surface, outward],
-            "y": [{"length": high, "cells": 14, "ratio": 1 / 80}, {"length": FINE, "cells": CELLS}],
+            "y": [{"length": high, "cells": beyond, "ratio": 1 / 80}, {"length": FINE, "cells": CELLS}],
         },
         material={"kind": "linear_elastic", "youngs_modulus": YOUNGS_MODULUS, "poisson_ratio": POISSON_RATIO},
         conditions=[{"kind": "clamped", "face": "bottom"}],
@@ -84,7 +84,7 @@ def pushed() -> tuple[float, float, Array]:
             }
         ],
         penetration_tolerance=5e-9,
-        steps=5,
+        steps=steps,
         asked=forces | moved,
     )
     by_shear = np.array([found[f"x{number}_2"] - found[f"x{number}_1"] for number in range(len(signed))])
@@ -92,8 +92,10 @@ def pushed() -> tuple[float, float, Array]:
     return abs(found["normal"]), abs(found["shear"]), (right + left) / 2
 
 
-def test_a_pushed_cylinder_sticks_in_the_middle(one_thread, verification_record):
-    normal, shear, lag = pushed()
+@pytest.mark.parametrize(("steps", "beyond"), [(1, 8), pytest.param(5, 14, marks=pytest.mark.slow)])
+def test_a_pushed_cylinder_sticks_in_the_middle(steps, beyond, one_thread, verification_record):
+    """At the contact the cells are the same. Within 1.2 % in one step for each movement, within 0.8 % in five."""
+    normal, shear, lag = pushed(steps, beyond)
     assert 0.6 < shear / (FRICTION * normal) < 0.65
     scale = float(np.abs(lag).max())
 
@@ -102,7 +104,8 @@ def test_a_pushed_cylinder_sticks_in_the_middle(one_thread, verification_record)
 
     exact = slipped(normal, shear)
     check(exact)
-    known = {"reference": "Cattaneo 1938, Mindlin 1949", "kind": "exact", "mesh": "seven cells to half of the contact"}
+    mesh = f"seven cells to half of the contact, {beyond} beyond"
+    known = {"reference": "Cattaneo 1938, Mindlin 1949", "kind": "exact", "mesh": mesh}
     verification_record("slip beside a sticking middle", lag, exact, tolerance=TOLERANCE, scale=scale, **known)
     wrong = {"half_the_force": slipped(normal, shear / 2), "thicker": slipped(normal, shear, radius=2 * RADIUS)}
     assert_kills(check, **{name: (one,) for name, one in wrong.items()}, full_slip=(slipped(normal, shear, remains=0.0),))

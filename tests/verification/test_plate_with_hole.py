@@ -38,7 +38,7 @@ def around_hole(semi_axes: tuple[float, float], poisson_ratio: float) -> dict[st
     return {name: float(quantities[name].value) for name in ("above", "beside", "further", "force", "area")}
 
 
-@pytest.mark.parametrize("poisson_ratio", [0.3, 0.5])
+@pytest.mark.parametrize("poisson_ratio", [pytest.param(0.3, marks=pytest.mark.slow), 0.5])
 def test_a_round_hole(poisson_ratio, verification_record):
     radius = 1e-3
     found = around_hole((radius, radius), poisson_ratio)
@@ -68,7 +68,7 @@ def test_a_round_hole(poisson_ratio, verification_record):
     )
 
 
-@pytest.mark.parametrize("semi_axes", [(0.8e-3, 1.2e-3), (1.2e-3, 0.8e-3)])
+@pytest.mark.parametrize("semi_axes", [(0.8e-3, 1.2e-3), pytest.param((1.2e-3, 0.8e-3), marks=pytest.mark.slow)])
 def test_an_elliptic_hole(semi_axes, verification_record):
     a, b = semi_axes
     found = around_hole(semi_axes, 0.3)

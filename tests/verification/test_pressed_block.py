@@ -71,7 +71,7 @@ class Press:
 
 
 @pytest.mark.parametrize("measure", MEASURES)
-@pytest.mark.parametrize("stretch", [0.7, 0.8, 0.9])
+@pytest.mark.parametrize("stretch", [0.7, *(pytest.param(stretch, marks=pytest.mark.slow) for stretch in (0.8, 0.9))])
 def test_frictionless_block_reads_the_exact_pressure(measure, stretch, verification_record):
     press = Press(measure, Coulomb(friction=0.0), cells=2).to(stretch)
     nominal = 2 * (stretch**-2 - stretch) * (1 + 0.25 / stretch)
@@ -89,8 +89,15 @@ def test_frictionless_block_reads_the_exact_pressure(measure, stretch, verificat
     assert -press.state.gap.min() <= 1e-7
 
 
-@pytest.mark.parametrize("measure", MEASURES)
-@pytest.mark.parametrize("law", [Coulomb(friction=0.3), Stick()], ids=["coulomb", "stick"])
+@pytest.mark.parametrize(
+    ("law", "measure"),
+    [
+        pytest.param(Coulomb(friction=0.3), "axisymmetric", id="coulomb-axisymmetric"),
+        pytest.param(Stick(), "solid", id="stick-solid"),
+        pytest.param(Coulomb(friction=0.3), "solid", id="coulomb-solid", marks=pytest.mark.slow),
+        pytest.param(Stick(), "axisymmetric", id="stick-axisymmetric", marks=pytest.mark.slow),
+    ],
+)
 def test_friction_stays_in_its_cone_and_forces_balance(measure, law, verification_record):
     press = Press(measure, law, glued=True, tolerance=1e-4).to(0.85)
     smooth = Press(measure, Coulomb(friction=0.0), glued=True, tolerance=1e-4).to(0.85)

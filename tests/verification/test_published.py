@@ -181,6 +181,7 @@ def creep(times: Array, stress: float = 3.583333333333333e6, c10: float = 1e6, s
     return np.interp(times, grid, stretches)
 
 
+@pytest.mark.slow  # a true stress does the same quickly in test_creep_and_recovery.py
 def test_creep_to_a_stretch_of_six(verification_record):
     result = solution("creeping_cube")
     names = ("extension_at_once", "extension_100s", "extension_1e4s", "extension_end")
@@ -273,6 +274,7 @@ def twisted(cells: int) -> tuple[float, float]:
     return value(result, "torque"), value(result, "axial_force")
 
 
+@pytest.mark.slow  # a tube of test_sliding_faces.py is twisted quickly
 def test_torsion(verification_record):
     computed = (value(solution("torsion"), "torque"), value(solution("torsion"), "axial_force"))
 

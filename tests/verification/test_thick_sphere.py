@@ -109,8 +109,14 @@ def test_the_closed_form_gives_the_printed_numbers(verification_record):
     assert_kills(check, swapped=(C01, C10))
 
 
-@pytest.mark.parametrize("measure", STRETCH_TOLERANCE)
-@pytest.mark.parametrize(("la", "pressure"), PRINTED.items())
+@pytest.mark.parametrize(
+    ("la", "pressure", "measure"),
+    [
+        pytest.param(*printed, measure, marks=pytest.mark.slow if measure == "solid" and printed[0] != 1.2 else ())
+        for printed in PRINTED.items()
+        for measure in STRETCH_TOLERANCE
+    ],
+)
 def test_stretch_and_stress(measure, la, pressure, verification_record):
     body, solved = solve_sphere(measure, pressure)
     assert_stretch(measure, body, solved, la)
@@ -129,7 +135,9 @@ def test_stretch_and_stress(measure, la, pressure, verification_record):
     assert_kills(check, swapped=(exact_radial_stress(R, la, C01, C10),), tube=(tube_stress(R, la),))
 
 
-@pytest.mark.parametrize("measure", STRETCH_TOLERANCE)
+@pytest.mark.parametrize(
+    "measure", [pytest.param(one, marks=pytest.mark.slow if one == "solid" else ()) for one in STRETCH_TOLERANCE]
+)
 def test_a_wrong_c01_is_seen(measure):
     wrong = MooneyRivlin2(c10=C10 + 0.05, c01=C01 - 0.05)
     with pytest.raises(AssertionError):

@@ -110,17 +110,37 @@ def overlap(one: list[float], other: list[float]) -> bool:
 def shown(browser: webdriver.Chrome, *arguments: str) -> Iterator[None]:
     """The page of a command, which must say nothing to the console but warnings of the graphics driver."""
     command = [*forked_command(), "show", *arguments, "--web", "--no-browser"]
-    browser.get("about:blank")
-    browser.get_log("browser")  # what a page before this one asked of a server that had ended
     with subprocess.Popen(command, text=True, stdout=subprocess.PIPE) as process:
         try:
             assert process.stdout is not None
-            browser.get(process.stdout.readline().strip())
-            yield
-            told = [entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
-            assert told == []
+            with silent(browser, process.stdout.readline().strip()):
+                yield
         finally:
             process.terminate()
+
+
+@contextmanager
+def silent(browser: webdriver.Chrome, address: str) -> Iterator[None]:
+    """The page at an address, which must say nothing to the console but warnings of the graphics driver."""
+    browser.get("about:blank")
+    browser.get_log("browser")  # what a page before this one asked of a server that had ended
+    browser.get(address)
+    yield
+    told = [entry["message"] for entry in browser.get_log("browser") if entry["level"] == "SEVERE"]
+    assert told == []
+
+
+@contextmanager
+def shown_here(browser: webdriver.Chrome, place: Path) -> Iterator[None]:
+    """As ``shown``, of a server in this process: a command begins within a second."""
+    with served(opened_content(place)) as address, silent(browser, address):
+        yield
+
+
+@pytest.fixture(scope="module")
+def store(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A data set that no test changes."""
+    return made_up_store(tmp_path_factory.mktemp("store"))
 
 
 @contextmanager
@@ -274,7 +294,7 @@ def test_blocks_of_any_shape_have_ticks_that_are_apart_and_a_view_that_shows_all
 ) -> None:
     """Ticks were 5 mm apart at least, none but 0 in a block of 0.4 mm; bars on the jaws of a tall block were cut off."""
     folder = write_result(resized(made_up_grasp(), factors), tmp_path / "a", case_id="abc", provenance={})
-    with shown(browser, str(folder)):
+    with shown_here(browser, folder):
         until(lambda: browser.find_element(By.ID, "space-canvas").get_attribute("data-drawn"))
         browser.execute_script(RECORD_WORDS)
         browser.find_element(By.CSS_SELECTOR, "[name=unit][value=kPa]").click()
@@ -436,7 +456,7 @@ def test_the_labels_in_space_stay_whole(
 
 
 def test_a_localization_shows_its_estimate_first_and_draws_its_tube(browser: webdriver.Chrome, tmp_path: Path) -> None:
-    with shown(browser, str(localized_folder(tmp_path / "a"))):
+    with shown_here(browser, localized_folder(tmp_path / "a")):
         until(lambda: "Tube at (20.0, 20.0, 10.0) mm, radius 3.0 mm" in words(browser, "estimate"))
         assert "A ball and a tube" in words(browser, "estimate")
         assert "As stored: hypotheses" in words(browser, "estimators")
@@ -449,9 +469,9 @@ def test_a_localization_shows_its_estimate_first_and_draws_its_tube(browser: web
         until(lambda: "Tube" not in words(browser, "estimate"))
 
 
-def test_a_sample_is_picked(browser: webdriver.Chrome, tmp_path: Path) -> None:
+def test_a_sample_is_picked(browser: webdriver.Chrome, store: Path) -> None:
     forces = taxel_forces(1)[0]
-    with shown(browser, str(made_up_store(tmp_path))):
+    with shown_here(browser, store):
         until(lambda: shows(browser, forces))
         browser.find_element(By.ID, "next").click()
         until(lambda: shows(browser, 1.1 * forces))
@@ -470,8 +490,8 @@ def test_a_sample_is_picked(browser: webdriver.Chrome, tmp_path: Path) -> None:
         assert all(np.isnan(value) for value in table(browser).values())
 
 
-def test_nothing_of_the_last_sample_stays_where_none_is_chosen(browser: webdriver.Chrome, tmp_path: Path) -> None:
-    with shown(browser, str(made_up_store(tmp_path))):
+def test_nothing_of_the_last_sample_stays_where_none_is_chosen(browser: webdriver.Chrome, store: Path) -> None:
+    with shown_here(browser, store):
         until(lambda: "longest bar now" in words(browser, "space-words") and "true" in words(browser, "legend"))
         until(lambda: _coloured(browser))
         browser.find_element(By.CSS_SELECTOR, "#split option[value='test']").click()  # the failed sample is another part's
@@ -513,7 +533,7 @@ def sender(port: int, count: int, rate: float = 20.0) -> Iterator[None]:
         thread.join()
 
 
-@pytest.mark.parametrize("count", [3, 16])
+@pytest.mark.parametrize("count", [3, pytest.param(16, marks=pytest.mark.slow)])
 def test_a_live_feed_is_drawn_and_its_title_stays_text(browser: webdriver.Chrome, tmp_path: Path, count: int) -> None:
     with socket.socket() as found:
         found.bind(("127.0.0.1", 0))

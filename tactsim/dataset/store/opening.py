@@ -261,7 +261,7 @@ def _group(folder: Path) -> dict[str, Any]:
 
 def _arrays(folder: Path, attributes: dict[str, Any]) -> tuple[dict[str, ArrayDescription], dict[str, str]]:
     """Arrays that can be read, in the order of their names, and why others cannot; what else is in the folder is passed over."""
-    declared = attributes.get(ARRAYS, consolidated_metadata(folder))
+    declared = attributes[ARRAYS] if ARRAYS in attributes else consolidated_metadata(folder)
     readable: dict[str, ArrayDescription] = {}
     faults: dict[str, str] = {}
     for name in sorted(set(declared) or _with_description(folder)):

@@ -12,7 +12,9 @@ from tactsim.analytic.generalized_maxwell import GeneralizedMaxwell
 from tactsim.analytic.interconversion import kelvin_of, maxwell_of
 from tactsim.errors import InvalidQuantity
 
-MODELS = 200
+MODELS = pytest.mark.parametrize(
+    "models", [range(50), pytest.param(range(50, 200), marks=pytest.mark.slow)], ids=["some", "more"]
+)
 """Random models, by their seeds."""
 CURVES = np.logspace(-7, 7, 141)
 """Times in s and angular frequencies in rad/s."""
@@ -61,8 +63,9 @@ def assert_equal(computed: np.ndarray | float, expected: np.ndarray | float, see
     np.testing.assert_allclose(computed, expected, rtol=ROUND_OFF, err_msg=f"model of the seed {seed}")
 
 
-def test_a_round_trip_keeps_all_curves():
-    for seed in range(MODELS):
+@MODELS
+def test_a_round_trip_keeps_all_curves(models):
+    for seed in models:
         kelvin = random_kelvin(seed)
         maxwell = maxwell_of(kelvin)
         back = kelvin_of(maxwell)
@@ -74,8 +77,9 @@ def test_a_round_trip_keeps_all_curves():
         assert_equal(second.imag, first.imag, seed)
 
 
-def test_compliance_and_modulus_are_inverse_in_time_and_frequency():
-    for seed in range(MODELS):
+@MODELS
+def test_compliance_and_modulus_are_inverse_in_time_and_frequency(models):
+    for seed in models:
         kelvin = random_kelvin(seed)
         maxwell = maxwell_of(kelvin)
         assert_equal(identity(kelvin, maxwell, CURVES), 1, seed)

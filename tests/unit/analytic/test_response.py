@@ -45,7 +45,7 @@ def convolved(history: History, kernel, instantaneous: float, t: float) -> float
     return instantaneous * float(history.value(t)) + sum(piece[0] for piece in pieces)
 
 
-@pytest.mark.parametrize("seed", range(8))
+@pytest.mark.parametrize("seed", [*range(3), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(3, 8))])
 def test_the_response_is_the_convolution(seed):
     kelvin, history = random_kelvin(seed), random_history(seed)
     maxwell = maxwell_of(kelvin)
@@ -83,7 +83,7 @@ def test_the_response_is_that_of_an_ordinary_differential_equation(seed):
     np.testing.assert_allclose(response(kelvin, history, t), strain, rtol=1e-10)
 
 
-@pytest.mark.parametrize("seed", range(6))
+@pytest.mark.parametrize("seed", [*range(2), *(pytest.param(seed, marks=pytest.mark.slow) for seed in range(2, 6))])
 def test_the_stress_of_a_strain_gives_the_strain_back(seed):
     """Both models of one material: a sampled stress, its strain at many points, and the stress of this strain."""
     kelvin = random_kelvin(seed)

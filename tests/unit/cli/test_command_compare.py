@@ -33,6 +33,8 @@ experiment:
   loading: {{control: force, pieces: [{{kind: jump, to: 0.1 N, duration: 1 s}}]}}
 """
 
+UNDRAWN = ("--figures", "none")
+
 
 @pytest.fixture
 def cases(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> list[str]:
@@ -70,7 +72,7 @@ def test_the_figure_of_a_comparison_has_the_form_that_is_asked_for(cases: list[s
 def test_a_warning_of_several_cases_is_said_in_the_report_of_its_own_alone(
     cases: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
-    assert main(["run", *cases]) == 0
+    assert main(["run", *cases, *UNDRAWN]) == 0
     lines = capsys.readouterr().out.splitlines()
     warnings = [line.strip() for line in lines if "warning: " in line]
     assert len(warnings) == len(cases)
@@ -79,18 +81,18 @@ def test_a_warning_of_several_cases_is_said_in_the_report_of_its_own_alone(
 
 
 def test_several_cases_are_run_again_and_again_in_the_default_folder(cases: list[str]) -> None:
-    for force in ("0.1 N", "0.2 N", "0.3 N"):
-        assert main(["run", *cases, "--quiet", "--set", f"experiment.loading.pieces.0.to={force}"]) == 0
+    for force, figures in (("0.1 N", ()), ("0.2 N", UNDRAWN), ("0.3 N", UNDRAWN)):
+        assert main(["run", *cases, "--quiet", *figures, "--set", f"experiment.loading.pieces.0.to={force}"]) == 0
         assert sorted(os.listdir("results")) == ["comparison", "large", "small"]
         assert f"largest_force [mN] | {1e3 * float(force[:3]):g} |" in Path("results/comparison/comparison.md").read_text()
-        assert main(["compare", "results", "--out", "table"]) == 0
+        assert main(["compare", "results", "--out", "table", *figures]) == 0
     assert sorted(os.listdir(".")) == ["large.yaml", "results", "small.yaml", "table"]
 
 
 def test_a_named_folder_of_several_cases_needs_force_as_that_of_one_does(
     cases: list[str], capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    silent = ("--quiet", "--figures", "none")
+    silent = ("--quiet", *UNDRAWN)
     assert main(["run", *cases, "--out", "mine", *silent]) == 0
     with monkeypatch.context() as patch:
         patch.setattr(ClosedForm, "begin", lambda self: pytest.fail("computed before the folders were checked"))
@@ -109,21 +111,21 @@ def test_a_named_folder_of_several_cases_needs_force_as_that_of_one_does(
 
 
 def test_no_comparison_replaces_a_result(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", *cases, "--quiet"]) == 0
+    assert main(["run", *cases, "--quiet", *UNDRAWN]) == 0
     assert main(["compare", "results", "--out", "results/small"]) == 5
     assert "results/small holds a result" in capsys.readouterr().err
     write_files({"validation.json": b"{}"}, "report")
     assert main(["compare", "results", "--out", "report"]) == 5
     assert "report holds something else than a comparison" in capsys.readouterr().err
     Path("comparison.yaml").write_text(Path(cases[0]).read_text())
-    assert main(["run", *cases, "comparison.yaml", "--quiet"]) == 2
-    assert main(["run", "comparison.yaml", "--quiet"]) == 0
-    assert main(["run", *cases, "--quiet"]) == 5
+    assert main(["run", *cases, "comparison.yaml", "--quiet", *UNDRAWN]) == 2
+    assert main(["run", "comparison.yaml", "--quiet", *UNDRAWN]) == 0
+    assert main(["run", *cases, "--quiet", *UNDRAWN]) == 5
     assert Path("results/comparison/result.json").is_file()
 
 
 def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", *cases, "--out", "designs", "--quiet"]) == 0
+    assert main(["run", *cases, "--out", "designs", "--quiet", *UNDRAWN]) == 0
     assert capsys.readouterr().out == ""
     assert Path("designs/comparison/comparison.csv").is_file(), "quiet are words alone, not files"
     assert main(["compare", "designs"]) == 0
@@ -133,13 +135,13 @@ def test_stored_results_are_compared_by_what_differs(cases: list[str], capsys: p
     assert shown[3].split() == ["outer_radius", "[mm]", "4", "3"], "what differs between the cases stands first"
     assert not any(line.startswith("points") for line in shown)
     assert not any(line.startswith("largest_force ") for line in shown), "the force is that of both"
-    assert main(["compare", "designs/small", "designs/large", "--all", "--out", "table"]) == 0
+    assert main(["compare", "designs/small", "designs/large", "--all", "--out", "table", *UNDRAWN]) == 0
     assert "largest_force" in capsys.readouterr().out
     assert Path("table/comparison.csv").is_file()
 
 
 def test_what_cannot_be_compared_is_said(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", cases[0], "--quiet"]) == 0
+    assert main(["run", cases[0], "--quiet", *UNDRAWN]) == 0
     assert main(["compare", "results/small"]) == 2
     assert "nothing to be compared with" in capsys.readouterr().err
     assert main(["compare", "results/small", "nowhere"]) == 5
@@ -160,7 +162,7 @@ def test_a_wrong_case_is_refused_before_another_is_computed(cases: list[str], ca
 
 def test_a_case_may_read_what_one_before_it_writes(cases: list[str]) -> None:
     Path("read.yaml").write_text("schema: tactsim/case/1\nexperiment: {kind: matrix_readout, grasp: designs/pressed}\n")
-    assert main(["run", cases[0], "read.yaml", "--out", "designs"]) == 5, "the grasp is looked for when its turn comes"
+    assert main(["run", cases[0], "read.yaml", "--out", "designs", *UNDRAWN]) == 5, "the grasp is looked for when its turn comes"
     assert Path("designs/small/result.json").is_file()
 
 
@@ -324,10 +326,10 @@ def test_every_warning_is_told_once_with_the_results_that_have_it(tmp_path: Path
 
 
 def test_a_changed_file_of_a_result_is_a_warning_of_the_comparison(cases: list[str], capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["run", *cases, "--quiet"]) == 0
+    assert main(["run", *cases, "--quiet", *UNDRAWN]) == 0
     place = Path("results/small/result.json")
     place.write_text(place.read_text() + " ")
-    assert main(["compare", "results", "--out", "table"]) == 0
+    assert main(["compare", "results", "--out", "table", *UNDRAWN]) == 0
     line = "small: result.json was changed since tactsim wrote it"
     assert f"warning: {line}" in capsys.readouterr().out
     assert f"- {line}" in Path("table/comparison.md").read_text()

@@ -19,7 +19,7 @@ def no_waiting_for_the_disk(monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(module, "sync", lambda path: None)
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture(scope="session")
 def kept(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A small store that stays as it is."""
     return small_store(tmp_path_factory.mktemp("kept"))

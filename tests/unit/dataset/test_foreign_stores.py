@@ -86,8 +86,8 @@ def test_what_is_no_data_set_is_reported(kind: str, kept: Path, tmp_path: Path, 
     assert not (tmp_path / "x.h5").exists()
 
 
-def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(tmp_path: Path) -> None:
-    place = small_store(tmp_path)
+def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(store: Path, tmp_path: Path) -> None:
+    place = store
     whole = load(place)
     left_out = "force"
     shutil.rmtree(place / left_out)
@@ -99,9 +99,19 @@ def test_a_store_that_an_earlier_version_began_is_read_but_not_gone_on_with(tmp_
         run_sweep(load_sweep(sweep_file(tmp_path)), place, resume=True)
 
 
+@pytest.fixture(scope="module")
+def longer(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The store of 30 samples, made at once."""
+    folder = tmp_path_factory.mktemp("longer")
+    run_sweep(load_sweep(sweep_file(folder), samples=30), folder / "s.zarr")
+    return folder / "s.zarr"
+
+
 @pytest.mark.parametrize("listed", [True, False], ids=["with a list of arrays", "without"])
-def test_a_store_from_before_samples_had_a_cost_is_checked_and_gone_on_with(tmp_path: Path, listed: bool) -> None:
-    place = small_store(tmp_path)
+def test_a_store_from_before_samples_had_a_cost_is_checked_and_gone_on_with(
+    store: Path, longer: Path, tmp_path: Path, listed: bool
+) -> None:
+    place = store
     for name in COST:
         shutil.rmtree(place / name)
     stated = json.loads((place / "zarr.json").read_text())
@@ -115,9 +125,7 @@ def test_a_store_from_before_samples_had_a_cost_is_checked_and_gone_on_with(tmp_
     run = run_sweep(load_sweep(sweep_file(tmp_path), samples=30), place, resume=True)
     assert (run.tally.done, run.tally.again) == (6, 0), "nothing that was there is computed again"
     assert check(place).findings == ()
-    (tmp_path / "whole").mkdir()
-    run_sweep(load_sweep(sweep_file(tmp_path), samples=30), tmp_path / "whole/s.zarr")
-    new, old = content(tmp_path / "whole/s.zarr"), content(place)
+    new, old = content(longer), content(place)
     assert new.keys() - old.keys() == COST.keys()
     for name, values in old.items():
         np.testing.assert_array_equal(values, new[name], err_msg=name)

@@ -68,6 +68,7 @@ def test_xarray_selects_a_taxel_by_its_jaw_and_row_without_tactsim(grasps: Path)
     assert faults(grasps) == []
 
 
+@pytest.mark.usefixtures("hdf5_here")
 def test_an_export_names_jaws_and_axes_as_the_store_does(grasps: Path, tmp_path: Path) -> None:
     """Which jaw comes first was to be read out of the description of a variable."""
     exported(grasps, tmp_path / "g.h5")

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from drawn import colliding_words
-from made_grasps import LAYOUT, SIZE, made_samples, made_store, plain_result, response
+from made_grasps import FEW, LAYOUT, SIZE, made_samples, made_store, plain_result, response
 
 from tactsim import progress
 from tactsim.cli import main
@@ -129,7 +129,7 @@ def test_whoever_watches_sees_how_many_estimates_are_done(
 
 def ranking_of_made_store(folder: Path, table: LumpResponse) -> list[str]:
     """The command that ranks the estimators on a store made in the folder, with a plain grasp as the reference."""
-    store, plain = made_store(folder, table, training=39), plain_result(folder / "plain")
+    store, plain = made_store(folder, table, FEW, training=7), plain_result(folder / "plain")
     given = ["--reference", plain, "--noise", "0.3 mN", "--split", "test", "--out", str(folder / "out")]
     return ["data", "rank", str(store), *given]
 
@@ -166,6 +166,7 @@ def test_an_estimator_that_fails_costs_no_other_its_place(
 
     table = response()
     monkeypatch.setattr("tactsim.experiments.localization.response_store.stored_response", lambda folder: table)
+    monkeypatch.setattr("tactsim.dataset.figures.estimator_ranking.ranking_figures", lambda content: {})
     monkeypatch.setattr(HypothesesEstimator, "estimate", refusing)
     monkeypatch.setattr(ModelBasedEstimator, "estimate", broken)
     order = ranking_of_made_store(tmp_path, table)

@@ -46,7 +46,7 @@ def test_samples_that_repeat_one_another_are_known_no_better_than_one_of_each() 
     assert width(share([(7, True), (7, False), (7, True)])) > 0.8, "a single specimen"
 
 
-@pytest.mark.parametrize("sizes", [(3,) * 40, (1, 2, 3, 4, 5) * 8])
+@pytest.mark.parametrize("sizes", [pytest.param((3,) * 40, marks=pytest.mark.slow), (1, 2, 3, 4, 5) * 8])
 def test_intervals_hold_the_truth_as_often_as_they_say_where_samples_of_a_specimen_are_alike(sizes: tuple[int, ...]) -> None:
     """300 data sets of 40 specimens whose samples share much of their error.
 

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from made_grasps import (
     CLOSINGS,
+    FEW,
     LAYOUT,
     NOISE,
     READOUT,
@@ -101,13 +102,13 @@ def test_jaws_and_tissue_that_vary_among_the_samples_are_warned_of(
 ) -> None:
     """Lumps were located twice as badly on jaws that lean, and nothing said why."""
     assert before in TEXT
-    place = made_store(tmp_path, response(), text=TEXT.replace(before, after, 1))
+    place = made_store(tmp_path, response(), text=FEW.replace(before, after, 1))
     with pytest.warns(UserWarning, match=rf"^{key} varies among the samples, not in the reference"):
         judged_samples(place, [plain], source="taxel_force")
 
 
 def test_jaws_unlike_those_of_the_reference_are_named(tmp_path: Path, plain: str) -> None:
-    leaning = TEXT.replace("  matrix:", "  lower: {tilt_y: 2 deg}\n  matrix:", 1)
+    leaning = FEW.replace("  matrix:", "  lower: {tilt_y: 2 deg}\n  matrix:", 1)
     with pytest.warns(UserWarning, match=r"^tilt_y of the lower jaw is 2°, in the reference 0°: what this changes"):
         judged_samples(made_store(tmp_path, response(), text=leaning), [plain], source="taxel_force")
 
@@ -125,10 +126,10 @@ def test_the_noise_of_readings_is_as_large_as_stated() -> None:
 
 
 def test_read_forces_are_held_against_a_reference_read_alike(tmp_path: Path, plain: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", READOUT))
+    place = made_store(tmp_path, response(), FEW.replace("  time: {steps: 1}\n", READOUT))
     samples = judged_samples(place, [plain], source="read_force")
     assert (samples.own_noise == samples.noise).all()
-    assert samples.noise == pytest.approx(np.full(40, samples.noise[0])), "sensors of one kind"
+    assert samples.noise == pytest.approx(np.full(8, samples.noise[0])), "sensors of one kind"
     assert samples.references.shape == samples.forces.shape
     parsed: list[Store] = []
     read = samples_module.stored_sweep
@@ -146,7 +147,7 @@ def test_read_forces_are_held_against_a_reference_read_alike(tmp_path: Path, pla
 def test_readings_without_noise_are_refused(tmp_path: Path, plain: str) -> None:
     """Round-off was taken for the noise of the sensors, so that every estimator saw a lump in every sample."""
     quiet = READOUT.replace("white: 1 mV", "white: 0 V")
-    place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", quiet))
+    place = made_store(tmp_path, response(), FEW.replace("  time: {steps: 1}\n", quiet))
     with pytest.raises(InputError, match=r"read without noise.*--noise '1 mN' \(in Python: noise=1e-3\)"):
         judged_samples(place, [plain], source="read_force")
     assert judged_samples(place, [plain], source="read_force", noise=1e-3).noise == pytest.approx(1e-3)
@@ -167,13 +168,13 @@ def test_every_sample_is_judged_with_the_noise_of_its_own_sensors(tmp_path: Path
     (tmp_path / "quiet").mkdir()
     with pytest.raises(InputError, match="read without noise"):
         judged_samples(
-            made_store(tmp_path / "quiet", response(), TEXT.replace("  time: {steps: 1}\n", quiet)), [plain], source="read_force"
+            made_store(tmp_path / "quiet", response(), FEW.replace("  time: {steps: 1}\n", quiet)), [plain], source="read_force"
         )
 
 
 def test_a_sample_that_was_computed_from_another_case_is_refused(tmp_path: Path, plain: str) -> None:
     varied = READOUT.replace("white: 1 mV", "white: {uniform: [1 mV, 2 mV]}")
-    place = made_store(tmp_path, response(), TEXT.replace("  time: {steps: 1}\n", varied))
+    place = made_store(tmp_path, response(), FEW.replace("  time: {steps: 1}\n", varied))
     Store.open(place, writing=True).array("case_id")[3] = "f" * 16
     sum_up(place)
     with pytest.raises(StorageError, match="sample 3 was computed from another case than this tactsim draws"):
@@ -181,12 +182,10 @@ def test_a_sample_that_was_computed_from_another_case_is_refused(tmp_path: Path,
 
 
 def test_samples_of_one_specimen_keep_its_number(tmp_path: Path, plain: str) -> None:
-    shared = TEXT.replace(
-        "samples: 40,", "samples: 40, samples_per_specimen: 2, within_specimen: [experiment.loading.pieces.0.to],"
-    )
+    shared = FEW.replace("samples: 8,", "samples: 8, samples_per_specimen: 2, within_specimen: [experiment.loading.pieces.0.to],")
     place = made_store(tmp_path, response(), shared.replace("to: 1 mm", "to: {uniform: [0.5 mm, 1 mm]}"))
     samples = judged_samples(place, [plain], source="taxel_force")
-    assert [truth.group for truth in samples.truths] == [k // 2 for k in range(40)]
+    assert [truth.group for truth in samples.truths] == [k // 2 for k in range(8)]
 
 
 @pytest.mark.parametrize(
@@ -206,7 +205,7 @@ def test_another_reference_is_refused(store: Path, tmp_path: Path, changes: dict
 @pytest.mark.parametrize("heights", ["20 mm, 22 mm", "22 mm, 20 mm"])
 def test_samples_of_another_block_than_the_first_are_refused(tmp_path: Path, plain: str, heights: str) -> None:
     """Only the first sample was held against the reference; the places of the others were told in its block."""
-    varied = TEXT.replace("size: [40 mm, 40 mm, 20 mm]", f"size: [40 mm, 40 mm, {{values: [{heights}]}}]")
+    varied = FEW.replace("size: [40 mm, 40 mm, 20 mm]", f"size: [40 mm, 40 mm, {{values: [{heights}]}}]")
     place = made_store(tmp_path, response(), varied)
     with pytest.raises(InputError, match="the block of the store measures 40 mm x 40 mm x 22 mm, that of the reference"):
         judged_samples(place, [plain], source="taxel_force")
@@ -241,7 +240,7 @@ def test_stores_that_cannot_be_judged_are_refused(store: Path, plain: str, tmp_p
     with pytest.raises(StorageError, match=r"no such folder: .*nowhere; name one that tactsim sweep wrote"):
         judged_samples(tmp_path / "nowhere", [plain], source="taxel_force")
     with pytest.raises(InputError, match="no sample that is done"):
-        judged_samples(made_store(tmp_path, response(), done=False), [plain], source="taxel_force")
+        judged_samples(made_store(tmp_path, response(), FEW, done=False), [plain], source="taxel_force")
     other = tmp_path / "closed_form"
     other.mkdir()
     with pytest.raises(InputError, match="holds samples of closed_form"):

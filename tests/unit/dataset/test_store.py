@@ -23,7 +23,7 @@ import pytest
 import xarray
 import zarr
 from fork_server import forked_python
-from sweeps import TEXT, Inline, assert_same, content, run_sweep, small_store, sweep_file
+from sweeps import TEXT, Inline, assert_same, compute_once, content, load_once, run_sweep, small_store, sweep_file
 from zarr.storage import LocalStore
 
 from tactsim import code_identity
@@ -50,10 +50,16 @@ from tactsim.shipped import CASES
 TESTS = Path(__file__).parents[2]
 
 
-@pytest.fixture(scope="module")
-def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+@pytest.fixture(autouse=True)
+def computed_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """How often it is told to is seen by the tally."""
+    compute_once(monkeypatch)
+
+
+@pytest.fixture
+def whole(kept: Path) -> Path:
     """A store that nothing disturbed."""
-    return small_store(tmp_path_factory.mktemp("whole"))
+    return kept
 
 
 def test_an_interruption_waits_until_a_store_is_made_and_leaves_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -108,7 +114,7 @@ def test_noise_is_apart_from_what_is_clean(whole: Path) -> None:
 @pytest.mark.parametrize("tasks", [0, 1, 5])
 def test_an_interrupted_sweep_goes_on(whole: Path, tmp_path: Path, tasks: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(running, "MOST_IN_TASK", 2)
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    sweep, place = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"
     with opened_run(sweep, place) as going, pytest.raises(KeyboardInterrupt):
         going.compute(Inline(sweep, stop_after=tasks), lambda tally: None)
     assert len(Store.open(place).pending()) > 0
@@ -160,7 +166,7 @@ def test_blocks_of_a_torn_journal_are_kept_up_to_the_tear(tmp_path: Path) -> Non
 
 
 def test_a_second_sweep_is_refused_while_the_first_runs(tmp_path: Path) -> None:
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    sweep, place = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"
     with opened_run(sweep, place), pytest.raises(StorageError, match="in use by another sweep"):
         run_sweep(sweep, place, resume=True)
     (tmp_path / ".s.zarr.lock").write_text("what a dead process left")
@@ -178,22 +184,22 @@ def test_too_little_memory_is_not_called_damage(whole: Path, monkeypatch: pytest
 
 
 def test_an_existing_store_needs_resume_and_the_same_sweep(whole: Path, tmp_path: Path) -> None:
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    sweep, place = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"
     with pytest.raises(StorageError, match=r"no data set .* to resume"):
         run_sweep(sweep, place, resume=True)
     run_sweep(sweep, place)
     with pytest.raises(StorageError, match="--resume"):
         run_sweep(sweep, place)
-    changed = load_sweep(sweep_file(tmp_path, TEXT.replace("2.5 mm", "2.4 mm")))
+    changed = load_once(sweep_file(tmp_path, TEXT.replace("2.5 mm", "2.4 mm")))
     with pytest.raises(StorageError, match=r"experiment\.inner_radius\.uniform differs"):
         run_sweep(changed, place, resume=True)
     with pytest.raises(StorageError, match="would lose some"):
-        run_sweep(load_sweep(sweep_file(tmp_path), samples=12), place, resume=True)
-    run_sweep(load_sweep(sweep_file(tmp_path), samples=30), place, resume=True)
+        run_sweep(load_once(sweep_file(tmp_path), samples=12), place, resume=True)
+    run_sweep(load_once(sweep_file(tmp_path), samples=30), place, resume=True)
     retold = TEXT.replace(
         "times: 4", "times: 4\n  title: Told anew\n  limits: None known\n  license: CC0-1.0\n  time_limit: 1 min"
     )
-    run_sweep(load_sweep(sweep_file(tmp_path, retold), samples=30), place, resume=True)
+    run_sweep(load_once(sweep_file(tmp_path, retold), samples=30), place, resume=True)
     assert [Store.open(place).attributes[name] for name in ("title", "limits", "license")] == [
         *("Told anew", "None known", "CC0-1.0"),
     ]
@@ -204,7 +210,7 @@ def test_an_existing_store_needs_resume_and_the_same_sweep(whole: Path, tmp_path
 
 
 def test_changed_code_is_refused_or_marked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    sweep, place = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"
     with opened_run(sweep, place) as going, pytest.raises(KeyboardInterrupt):
         going.compute(Inline(sweep, stop_after=1), lambda tally: None)
     monkeypatch.setattr(resuming, "code_identity", lambda: "9.9.9+other")
@@ -223,7 +229,7 @@ def test_what_is_not_a_data_set_is_left_alone(tmp_path: Path, thing: str) -> Non
     target = place / "notes.txt" if thing == "folder" else place
     target.write_text("mine")
     with pytest.raises(StorageError, match="not a data set of tactsim"):
-        run_sweep(load_sweep(sweep_file(tmp_path)), place)
+        run_sweep(load_once(sweep_file(tmp_path)), place)
     assert target.read_text() == "mine"
     with pytest.raises(StorageError, match="not a data set"):
         Store.open(place)
@@ -242,7 +248,7 @@ def test_a_full_disk_ends_with_an_error_and_keeps_what_was_written(
 ) -> None:
     """The largest file that may be written stands for the room: there is none for the first task, or for a later one."""
     monkeypatch.setattr(running, "MOST_IN_TASK", 2)
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    sweep, place = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"
     limits, earlier = resource.getrlimit(resource.RLIMIT_FSIZE), signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
     with opened_run(sweep, place) as going:
         try:
@@ -269,7 +275,7 @@ def test_a_disk_that_is_full_before_the_first_sample_is_not_called_damage(
     monkeypatch.setattr(zarr, "consolidate_metadata", full)
     with (
         pytest.raises(StorageError, match=r"^cannot write .*: No space left on device$"),
-        opened_run(load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"),
+        opened_run(load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"),
     ):
         pytest.fail("it was opened")
     assert not (tmp_path / "s.zarr").exists()
@@ -281,7 +287,7 @@ def test_nothing_new_is_put_into_a_store(whole: Path, tmp_path: Path) -> None:
     shutil.copytree(whole, kept)
     for place in (kept / "inner.zarr", kept / "force" / "inner.zarr"):
         with pytest.raises(StorageError, match=r"inner\.zarr lies in the data set .*kept\.zarr; choose a place outside it"):
-            run_sweep(load_sweep(sweep_file(tmp_path)), place)
+            run_sweep(load_once(sweep_file(tmp_path)), place)
         with pytest.raises(StorageError, match="lies in the data set"), claimed(place):
             pytest.fail("it was claimed")
     assert check(kept).findings == ()
@@ -301,7 +307,7 @@ def left_in_journal(sweep: Sweep, place: Path, monkeypatch: pytest.MonkeyPatch, 
 
 
 def test_arrays_that_cannot_be_written_wait_in_the_journal(whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    sweep, place = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"
     waiting = left_in_journal(sweep, place, monkeypatch)
     findings = check(place).findings
     assert [finding.kind for finding in findings] == ["missing", "unfinished"]
@@ -319,7 +325,7 @@ def test_a_chunk_that_cannot_be_read_does_not_keep_the_journal_out(
     before: int, whole: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """A machine that loses its power leaves chunks empty; --resume ended with the advice to go on with --resume."""
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    sweep, place = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"
     if before:
         with pytest.raises(KeyboardInterrupt):
             run_sweep(sweep, place, stop_after=before)
@@ -339,7 +345,7 @@ def test_samples_that_come_into_the_arrays_while_they_are_counted_count_once(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """They were taken off those that are pending twice, and counted as waiting and as done."""
-    sweep, place = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr"
+    sweep, place = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr"
     waiting, read, reads = left_in_journal(sweep, place, monkeypatch), Store.read, []
 
     def meanwhile(store: Store, name: str, *rows: Any) -> np.ndarray:
@@ -364,7 +370,7 @@ def test_a_store_that_was_being_extended_is_not_described(whole: Path, tmp_path:
 
 
 def test_a_store_that_is_written_is_in_use_by_whatever_link_it_is_named(tmp_path: Path) -> None:
-    sweep, place, link = load_sweep(sweep_file(tmp_path)), tmp_path / "s.zarr", tmp_path / "link.zarr"
+    sweep, place, link = load_once(sweep_file(tmp_path)), tmp_path / "s.zarr", tmp_path / "link.zarr"
     link.symlink_to(place)
     with opened_run(sweep, place):
         for other in (place, link):
@@ -376,7 +382,7 @@ def test_a_store_that_is_written_is_in_use_by_whatever_link_it_is_named(tmp_path
 
 
 def test_a_lost_worker_costs_a_try_and_at_last_only_the_sample_that_kills(whole: Path, tmp_path: Path) -> None:
-    sweep = load_sweep(sweep_file(tmp_path))
+    sweep = load_once(sweep_file(tmp_path))
     run_sweep(sweep, tmp_path / "lucky.zarr", losing={5: 2})
     assert_same(whole, tmp_path / "lucky.zarr")
     going = run_sweep(sweep, tmp_path / "unlucky.zarr", losing={5: 99})
@@ -392,11 +398,11 @@ def test_a_lost_worker_costs_a_try_and_at_last_only_the_sample_that_kills(whole:
 @pytest.mark.parametrize("count", [0, -1, "2", 1.5])
 def test_a_number_of_workers_that_is_none_is_refused(tmp_path: Path, count: Any) -> None:
     with pytest.raises(InputError, match=r"workers is .*; allowed: whole numbers from 1 on"):
-        LocalWorkers.of(load_sweep(sweep_file(tmp_path)), count)
+        LocalWorkers.of(load_once(sweep_file(tmp_path)), count)
 
 
 def test_workers_that_always_die_end_the_sweep_and_mark_little(tmp_path: Path) -> None:
-    sweep = load_sweep(sweep_file(tmp_path), samples=300)
+    sweep = load_once(sweep_file(tmp_path), samples=300)
     with opened_run(sweep, tmp_path / "s.zarr") as going, pytest.raises(TactsimError, match="30 tasks in a row were lost"):
         going.compute(Inline(sweep, losing=dict.fromkeys(range(300), 999)), lambda tally: None)
     assert (Store.open(tmp_path / "s.zarr").read("status") == 2).sum() <= 30
@@ -429,7 +435,7 @@ NO_SUCH_QUANTITY = r"sweep.yaml:\d+: sweep.quantities.largest_froce: the result 
 def test_a_quantity_that_no_result_has_ends_the_sweep_at_once(
     tmp_path: Path, asked: str, words: str, executor: Callable[[Sweep], Executor]
 ) -> None:
-    sweep = load_sweep(sweep_file(tmp_path, TEXT.replace("times: 4", f"times: 4\n  quantities: {{{asked}}}")))
+    sweep = load_once(sweep_file(tmp_path, TEXT.replace("times: 4", f"times: 4\n  quantities: {{{asked}}}")))
     workers = executor(sweep)
     with pytest.raises(CaseError, match=words), closing(workers), opened_run(sweep, tmp_path / "s.zarr") as going:
         going.compute(workers, lambda tally: None)
@@ -478,17 +484,17 @@ def test_noise_differs_between_samples_of_kinds_that_store_what_the_sweep_names(
 ) -> None:
     """The store said other seeds than the samples had, which all were read with the noise of seed 1."""
     text = f"schema: tactsim/sweep/1\nexperiment: {{{experiment}}}\nsweep: {{samples: 4, quantities: {{rms_error: N}}}}\n"
-    sweep = load_sweep(sweep_file(tmp_path, text))
+    sweep = load_once(sweep_file(tmp_path, text))
     drawn = [drawn_specimen(sweep, specimen)[0] for specimen in range(4)]
     seeds = [dict(seeds_in(one.case.experiment))[path] for one in drawn]
     assert seeds == [used_seed(sweep, one) for one in drawn] == [noise_seed(sweep, one.sample) for one in drawn]
-    fixed = drawn_specimen(load_sweep(sweep_file(tmp_path, text), (f"experiment.{path}=7",)), 1)[0]
+    fixed = drawn_specimen(load_once(sweep_file(tmp_path, text), (f"experiment.{path}=7",)), 1)[0]
     assert dict(seeds_in(fixed.case.experiment))[path] == used_seed(sweep, fixed) == 7
 
 
 @pytest.mark.slow
 def test_processes_give_the_same_and_a_killed_one_is_replaced(whole: Path, tmp_path: Path) -> None:
-    sweep = load_sweep(sweep_file(tmp_path))
+    sweep = load_once(sweep_file(tmp_path))
     workers = LocalWorkers(sweep.text, 2)
     killed: list[int] = []
 
@@ -514,7 +520,7 @@ def test_chunks_hold_many_small_samples_or_a_few_large_ones() -> None:
 
 
 def test_opening_ten_thousand_samples_reads_no_sample(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    sweep = load_sweep(sweep_file(tmp_path), samples=10_000)
+    sweep = load_once(sweep_file(tmp_path), samples=10_000)
     with opened_run(sweep, tmp_path / "s.zarr"):
         pass
     asked, get = [], LocalStore.get

@@ -65,6 +65,32 @@ def test_a_body_without_a_boundary_condition_is_an_error_with_a_diagnosis(dim, n
         Problem(body, fixed, solver=direct_solver(solver)).solve(np.zeros(body.space.size), loads=[DeadLoad(force)])
 
 
+@pytest.mark.parametrize(
+    ("residual", "unbalanced", "forces"),
+    [
+        (0.05, 0.05, "at the guess"),
+        (0.05, 0.5, "of the last state"),
+        (0.5, 0.05, "of the last state"),
+        (0.05, 0.0, "at the guess"),
+    ],
+)
+def test_newton_begins_with_the_forces_at_a_guess_only_where_little_beside_them_is_unbalanced(residual, unbalanced, forces):
+    """Largest force of the body and force of the contact are 1 N each. A contact that presses with nothing, of a body that goes
+    back, is never little beside itself: `tests/unit/mechanics/test_retreat.py` shows what it would come to."""
+    interface = SimpleNamespace(start=lambda: "of the last state", iterate_at=lambda displacement: "at the guess")
+
+    def begun(contact_force):
+        state = SimpleNamespace(residual=residual, unbalanced=unbalanced, contact_force=contact_force, displacements=[None])
+        body = SimpleNamespace(kinematics=lambda _: SimpleNamespace(J=np.ones(1)), oriented_volume_ratio=lambda after: after.J)
+        balance = SimpleNamespace(body=body, forces=ExternalForces(interfaces=[interface]), at=lambda *_: state)
+        solution = newton._Solution(balance, direct_solver(), NewtonOptions(), 1e-10, None)
+        solution._start(np.zeros(1), 0.0)
+        return solution._iterates
+
+    assert begun(1.0) == [forces]
+    assert begun(0.0) == ["of the last state"]
+
+
 @pytest.mark.parametrize("dim", [2, 3])
 def test_too_few_iterations_raise_with_the_history(dim):
     body, fixed, force = block(dim, MATERIALS["incompressible"], held_axes=range(dim))

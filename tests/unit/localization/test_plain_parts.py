@@ -83,7 +83,7 @@ def test_a_lump_is_not_held_against_the_reference() -> None:
     assert parts.taxels == 2 * 6  # without the lump's own column of taxels, and the two beside it
 
 
-@pytest.mark.parametrize("wrong", [0.05, -0.05, 0.5])
+@pytest.mark.parametrize("wrong", [pytest.param(0.05, marks=pytest.mark.slow), -0.05, 0.5])
 def test_a_finding_that_rests_on_one_taxel_is_a_warning_that_names_it(wrong: float) -> None:
     forces = PLAIN.copy()
     forces[1, 0, 2] += wrong

@@ -59,7 +59,7 @@ def test_a_force_that_nothing_gives_is_not_found():
     assert len(tried) == ATTEMPTS
 
 
-def leaning() -> Grasp:
+def leaning(cells: tuple[int, int, int]) -> Grasp:
     """Jaws that lean away from each other by four degrees, so that the block is held at one side first."""
     return Grasp.model_validate(
         {
@@ -68,16 +68,24 @@ def leaning() -> Grasp:
             "lower": {"tilt_x": np.radians(-2.0)},
             "matrix": {"rows": 2, "columns": 2, "pitch": 8e-3, "size": 7e-3},
             "contact": {"kind": "coulomb", "friction": 0.4},
-            "mesh": {"kind": "structured", "cells": [4, 4, 3]},
+            "mesh": {"kind": "structured", "cells": cells},
             "loading": {"control": "force", "pieces": [{"kind": "ramp", "to": 0.5, "duration": 1.0}]},
             "time": {"steps": 1},
         }
     )
 
 
-def test_forces_found_under_a_displacement_are_those_that_a_force_begins_with(monkeypatch: pytest.MonkeyPatch):
-    usual = leaning().run()
+@pytest.mark.parametrize(("cells", "systems"), [((4, 3, 2), 13), pytest.param((4, 4, 3), 14, marks=pytest.mark.slow)])
+def test_forces_found_under_a_displacement_are_those_that_a_force_begins_with(cells: tuple[int, int, int], systems: int):
+    """10 systems, and 8 on finer cells; two thirds of those without these forces are allowed."""
+    usual = leaning(cells).run()
     assert usual.status is Status.CONVERGED
-    monkeypatch.setattr(contact_equilibrium, "expected", lambda contact, distance: contact)  # the mutant: forgotten
-    forgotten = leaning().run()
-    assert usual.steps[0].newton_iterations < 0.7 * forgotten.steps[0].newton_iterations
+    assert usual.steps[0].newton_iterations <= systems
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("cells", "systems"), [((4, 3, 2), 13), ((4, 4, 3), 14)])
+def test_a_force_that_begins_without_them_takes_more(cells: tuple[int, int, int], systems: int, monkeypatch: pytest.MonkeyPatch):
+    """The mutant of the test above: 19 and 21 systems."""
+    monkeypatch.setattr(contact_equilibrium, "expected", lambda contact, distance: contact)
+    assert leaning(cells).run().steps[0].newton_iterations > systems

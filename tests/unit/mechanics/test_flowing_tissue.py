@@ -42,7 +42,7 @@ def forces_of(result: Result) -> list[float]:
 
 
 @pytest.mark.parametrize("friction", [pytest.param(0.3, marks=pytest.mark.slow), 1.0])
-def test_forces_rise_evenly(friction: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_forces_rise_evenly(friction: float) -> None:
     result = grasped(friction)
     assert result.status is Status.CONVERGED
     forces = forces_of(result)
@@ -50,7 +50,13 @@ def test_forces_rise_evenly(friction: float, monkeypatch: pytest.MonkeyPatch) ->
     finer = grasped(friction, time={"tolerance": 1e-3})
     assert finer.status is Status.CONVERGED
     np.testing.assert_allclose(forces[-1], forces_of(finer)[-1], rtol=FINER)
-    monkeypatch.setattr(viscoelasticity, "FLOWING", 0.0)  # the mutant: forces expected to grow as they did per distance
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("friction", [0.3, 1.0])
+def test_forces_expected_to_grow_as_they_did_per_distance_end_the_grasp(friction: float, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The mutant of the test above."""
+    monkeypatch.setattr(viscoelasticity, "FLOWING", 0.0)
     assert grasped(friction).status is Status.FAILED
 
 

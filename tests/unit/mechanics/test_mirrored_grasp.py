@@ -62,7 +62,7 @@ def assert_same(one, part, whole):
         assert_allclose(mine.state.traction @ mine.surface.points.weights, total, rtol=0, atol=5e-4 * np.abs(total).max())
 
 
-@pytest.mark.parametrize("force", [None, 0.5])
+@pytest.mark.parametrize("force", [pytest.param(None, marks=pytest.mark.slow), 0.5])
 def test_the_part_is_grasped_as_the_whole(force):
     mirrored = model()
     assert isinstance(mirrored.problem, MirroredProblem)

@@ -1,6 +1,7 @@
 """A body that goes back takes the contact with it: Newton does not begin with tissue that nothing touches.
 
 Mutant: a start from the forces at the guess whenever the residual is small, as it is beside forces of large cells at the base.
+The rule itself is tried in `tests/unit/fem/test_newton.py`.
 """
 
 from __future__ import annotations
@@ -45,6 +46,7 @@ def pressed() -> tuple[PressedModel, ContactEquilibrium]:
     return model, state
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("tolerances", [1.2, 4.0])
 def test_a_retreat_by_more_than_the_penetration_is_a_few_systems(
     pressed: tuple[PressedModel, ContactEquilibrium], tolerances: float, monkeypatch: pytest.MonkeyPatch

@@ -20,7 +20,7 @@ from tactsim.mesh.mesh_store import cache_folder, content_hash, stored_block_mes
 from tactsim.mesh.structured_block import morphed_block
 from tactsim.mesh.tetrahedra import mesh_key
 
-SETTINGS = BlockMeshSettings(inclusion_size=2.5e-3)
+SETTINGS = BlockMeshSettings(inclusion_size=4e-3)
 
 
 made_block = cache(morphed_block)

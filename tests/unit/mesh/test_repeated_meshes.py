@@ -1,4 +1,5 @@
-"""The mesher, which has no seed, gives the same mesh in every process where its random numbers can be fixed."""
+"""The mesher, which has no seed, gives the same mesh in every process where its random numbers can be fixed; a quick case stands
+in `test_block_mesh.py`, beside the mesh that it repeats."""
 
 from __future__ import annotations
 
@@ -8,11 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from lumps import LUMP, SIZE
 
-from tactsim.mesh.block import BlockMeshSettings
-from tactsim.mesh.mesh_store import content_hash
-from tactsim.mesh.tetrahedra import block_mesh
 from tactsim.outside import fixed_random_device
 from tactsim.outside.fixed_random_device import fix_random_device
 
@@ -20,7 +17,6 @@ where_numbers_are_fixed = pytest.mark.skipif(
     not (sys.platform == "linux" and platform.machine() == "x86_64"),
     reason="random numbers of libraries are fixed on Linux with x86-64 processors alone",
 )
-COARSE = BlockMeshSettings(size=8e-3, inclusion_size=4e-3)
 PROGRAM = """
 import hashlib
 from pathlib import Path
@@ -38,12 +34,6 @@ surface = input_surface(np.ones(3), [], BlockMeshSettings())
 nodes, cells = pytetwild.tetrahedralize(*surface, edge_length_abs=0.2, quiet=True)[:2]
 print(hashlib.sha256(nodes.tobytes() + cells.tobytes()).hexdigest())
 """
-
-
-@where_numbers_are_fixed
-def test_the_same_request_gives_the_same_mesh() -> None:
-    first, second = (block_mesh(SIZE, [LUMP], COARSE).mesh for _ in range(2))
-    assert content_hash(first) == content_hash(second)
 
 
 @pytest.mark.slow

@@ -467,7 +467,7 @@ def test_a_grasp_that_fails_once_its_jaws_have_let_go_says_so(monkeypatch, end, 
 
     monkeypatch.setattr(Grasp, "_begun", failing)
     pieces = [{"kind": "ramp", "to": to, "duration": "1 s"} for to in ("0.2 mm", end)]
-    result = Grasp.example().model_copy(update={"loading": {"control": "displacement", "pieces": pieces}}).run()
+    result = run(loading=pressed(*pieces))
     assert result.reason.startswith("stopped converging: no way on")
     assert ("The jaws had let go of the block: they pressed with " in result.reason) == said
 

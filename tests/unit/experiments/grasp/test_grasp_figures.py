@@ -272,7 +272,7 @@ def test_a_small_grasp_is_drawn_as_a_large_one():
     ],
     ids=["three by three", "four by four", "four by five", "eight by eight"],
 )
-@pytest.mark.parametrize("status", [Status.CONVERGED, Status.FAILED])
+@pytest.mark.parametrize("status", [Status.CONVERGED, pytest.param(Status.FAILED, marks=pytest.mark.slow)])
 def test_pressures_fit_into_their_taxels_and_are_legible(layout, form, status):
     """With their unit and the force beneath them those of four by five were written in letters of 4 and 3 points."""
     shape = (layout.rows, layout.columns)
@@ -449,7 +449,14 @@ def test_columns_closer_than_their_names_have_the_first_and_the_last_named():
     assert named == {"row 1", "row 8", "col. 1", "col. 8"}
 
 
-@pytest.mark.parametrize("size", [(24e-3, 24e-3, 16e-3), (30.5e-3, 32e-3, 20e-3), (24e-3, 30e-3, 40e-3)])
+@pytest.mark.parametrize(
+    "size",
+    [
+        (30.5e-3, 32e-3, 20e-3),
+        pytest.param((24e-3, 24e-3, 16e-3), marks=pytest.mark.slow),
+        pytest.param((24e-3, 30e-3, 40e-3), marks=pytest.mark.slow),
+    ],
+)
 def test_the_words_of_the_views_stand_clear_in_blocks_of_any_shape(size):
     """The title of the front view lay on the name of the axis above it where the top view just filled its place."""
     layout = TaxelLayout(rows=3, columns=4, pitch=6e-3, size=5e-3)

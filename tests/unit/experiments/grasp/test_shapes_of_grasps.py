@@ -47,7 +47,7 @@ SHAPES = {
     "one taxel": Shape((20, 20, 10), TaxelLayout(rows=1, columns=1), (12, 8, 6), 1.0),
 }
 
-QUICK = ("wide and thin", "tall", "many taxels")
+QUICK = ("wide and thin", "many taxels")
 """Shapes that the quick tests draw: the widest, the highest and the one of most words."""
 
 
@@ -82,6 +82,8 @@ def test_words_keep_clear_of_each_other(shape: str, monkeypatch: pytest.MonkeyPa
     result = grasped(SHAPES[shape])
     figures = dict(result.plot())
     assert len(figures) == 5
+    if shape != QUICK[-1]:
+        del figures["grasp_history"]  # the same of every block; most words are those of many taxels
     figures |= {"sketch": replace(result, status=Status.INTERRUPTED, steps=()).plot("sketch")}
     assert {name: found for name, figure in figures.items() if (found := colliding_words(figure))} == {}
 

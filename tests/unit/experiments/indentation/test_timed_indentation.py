@@ -28,7 +28,7 @@ pytestmark = pytest.mark.usefixtures("one_thread")
 FADING = Relaxation(fractions=(0.4, 0.2), times=(0.1, 2.0))
 TISSUE = NeoHookean(c10=1000.0, relaxation=FADING)
 ELASTIC = NeoHookean(c10=1000.0)
-COARSE = MeshSettings(finest=0.3e-3, growth=1.5)
+COARSE = MeshSettings(finest=0.6e-3, growth=2.0)
 JUMP = {"kind": "jump", "to": 0.1e-3, "duration": 10.0}
 
 
@@ -225,17 +225,25 @@ HELD_FORCE = forced({"kind": "jump", "to": 30e-3, "duration": 0.3})
 
 def test_under_a_force_the_contact_of_tissue_that_relaxes_becomes_softer_where_steps_fail():
     """It comes to the displacement of the contact that stays as stiff as the jump asked, and penetrates more."""
-    result = thin(loading=HELD_FORCE, **STIFF_AT_ONCE).run()
+    result = thin(loading=HELD_FORCE, mesh=MeshSettings(finest=0.3e-3, growth=1.5), **STIFF_AT_ONCE).run()
     assert result.status is Status.CONVERGED
-    assert float(result["displacement"].value) == pytest.approx(346.793e-6, rel=1e-3)  # of the contact that stays stiff
+    stiff = 346.793e-6  # of the contact that stays stiff, on this mesh
+    assert float(result["displacement"].value) == pytest.approx(stiff, rel=1e-3)
     assert 5e-9 < float(result["max_penetration"].value) < thin().tolerance, "a contact that stays stiff leaves 1.6 nm"
 
 
+def with_friction():
+    return thin(loading=HELD_FORCE, contact=Coulomb(friction=0.4), **STIFF_AT_ONCE)
+
+
+def test_a_contact_with_friction_softens_with_the_tissue_and_comes_to_its_end():
+    assert with_friction().run().status is Status.CONVERGED
+
+
+@pytest.mark.slow
 def test_with_friction_a_contact_that_stays_as_stiff_would_not_come_to_its_end(monkeypatch):
-    pressed = thin(loading=HELD_FORCE, **STIFF_AT_ONCE | {"contact": Coulomb(friction=0.4)})
-    assert pressed.run().status is Status.CONVERGED
     monkeypatch.setattr(contact_equilibrium, "_softened", lambda *_: None)
-    assert pressed.run().status is Status.FAILED
+    assert with_friction().run().status is Status.FAILED
 
 
 @pytest.mark.parametrize("fillet", [0.7e-3, 1.6e-3])

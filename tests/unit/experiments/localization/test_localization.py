@@ -204,7 +204,10 @@ def test_pictures_reach_over_the_outer_taxels(folders):
     np.testing.assert_array_equal(values[:, 0], values[:, 1])
 
 
-@pytest.mark.parametrize("layout", [TaxelLayout(rows=1, columns=1), TaxelLayout(rows=2, columns=9, pitch=4e-3, size=4e-3)])
+WIDE = TaxelLayout(rows=2, columns=9, pitch=4e-3, size=4e-3)
+
+
+@pytest.mark.parametrize("layout", [TaxelLayout(rows=1, columns=1), pytest.param(WIDE, marks=pytest.mark.slow)])
 def test_every_matrix_has_views(layout):
     forces = np.ones((2, layout.rows, layout.columns))
     result = grasp(forces, layout=layout, inclusions=(Tube.example(),))

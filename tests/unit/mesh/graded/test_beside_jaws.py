@@ -46,6 +46,10 @@ INCLUSIONS = {
 }
 
 
+QUICK = ("plain", "ball", "artery", "ending", "leaning", "beside")
+"""With and without a lump, with tubes of each kind: ``balls`` are meshed as ``ball``, the other tubes as ``artery``."""
+
+
 def planes(block, axis):
     """Ascending places in m of the planes across an axis that hold many nodes of the free faces."""
     on_faces = np.unique(np.concatenate([block.facets["upper"], block.facets["lower"]]))
@@ -58,7 +62,7 @@ def narrow(name):
     return graded_block(SIZE, INCLUSIONS[name], COARSE, [NARROW, NARROW])
 
 
-@pytest.mark.parametrize("name", INCLUSIONS)
+@pytest.mark.parametrize("name", [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in INCLUSIONS])
 def test_cells_are_thin_at_the_edges_of_a_flat(name):
     block = narrow(name)
     assert_sound(block)
@@ -71,7 +75,9 @@ def test_cells_are_thin_at_the_edges_of_a_flat(name):
                 assert len(between) >= 2, "an edge and its middle, at least"
 
 
-@pytest.mark.parametrize("name", ["plain", "ball", "artery", "across", "upright"])
+@pytest.mark.parametrize(
+    "name", ["plain", "ball", "artery", *(pytest.param(name, marks=pytest.mark.slow) for name in ("across", "upright"))]
+)
 def test_what_mirrors_itself_has_a_mesh_that_does(name):
     mesh = narrow(name).mesh
     assert same_mirrored(mesh, 0)
@@ -131,7 +137,7 @@ def test_what_no_cells_serve_is_refused(inclusions, flats, reason):
         graded_block(SIZE, inclusions, COARSE, flats)
 
 
-@pytest.mark.parametrize("name", ["plain", "ball", "artery"])
+@pytest.mark.parametrize("name", ["plain", "ball", pytest.param("artery", marks=pytest.mark.slow)])
 @pytest.mark.parametrize("flats", [[], [NARROW, OFFSET]], ids=["jaws that cover it", "narrow jaws"])
 def test_a_small_block_has_the_cells_of_a_large_one(name, flats):
     """Sizes that nobody gives are in proportion to a block that is thinner than 20 mm."""

@@ -13,6 +13,7 @@ from tactsim.errors import ConvergenceError, InputError, InvalidQuantity
 from tactsim.mechanics.models.block_source import GradedSource
 from tactsim.mesh.block import VOLUME_TOLERANCE, BlockMeshSettings
 from tactsim.mesh.fitting.layers import Layers
+from tactsim.mesh.graded import block as graded_module
 from tactsim.mesh.graded import bricks
 from tactsim.mesh.graded.block import graded_block, graded_misfit
 from tactsim.mesh.graded.cells import LAYER_GROWTH, LEAST_LAYERS, Filling
@@ -35,7 +36,7 @@ def random_lumps(count):
         yield Sphere(center=tuple(radius + 0.6e-3 + generator.random(3) * room), radius=radius)
 
 
-SOME = pytest.mark.parametrize("count", [4, pytest.param(40, marks=pytest.mark.slow)])
+SOME = pytest.mark.parametrize("count", [2, pytest.param(40, marks=pytest.mark.slow)])
 
 
 @SOME
@@ -122,7 +123,9 @@ def test_a_turned_ellipsoid_is_followed():
     assert abs(block.volume_errors[1]) < VOLUME_TOLERANCE
 
 
-def test_what_cannot_be_meshed_is_refused_by_name(tmp_path):
+def test_what_cannot_be_meshed_is_refused_by_name(tmp_path, monkeypatch):
+    for number in ("ATTEMPTS", "LEAST_LAYERS"):  # all of them are tried below
+        monkeypatch.setattr(graded_module, number, 1)
     vertices, faces = irregular()
     path = write_cells(tmp_path / "free.stl", vertices, triangle=faces)
     free = Surface(path=str(path), unit="mm", translation=(20e-3, 20e-3, 10e-3))
@@ -160,8 +163,11 @@ LONG = Ellipsoid(center=(20e-3, 20e-3, 10e-3), semi_axes=(12e-3, 1e-3, 1e-3))
     ],
     ids=["long", "bent", "large and small"],
 )
-def test_a_refusal_names_the_size_of_cells_that_would_suit(inclusions, words, better):
+@pytest.mark.parametrize("once", [True, pytest.param(False, marks=pytest.mark.slow)])
+def test_a_refusal_names_the_size_of_cells_that_would_suit(inclusions, words, better, once, monkeypatch):
     """Sizes half or twice as large do suit; where none of those that were tried did, tetrahedra alone are named."""
+    for number in ("ATTEMPTS", "LEAST_LAYERS") if once else ():
+        monkeypatch.setattr(graded_module, number, 1)
     usual = GradedSource().settings(SIZE)
     with pytest.raises(ConvergenceError, match=re.escape(words or "allowed: 0.02; take mesh.kind: tetrahedra")):
         graded_block(SIZE, inclusions, usual)
@@ -201,7 +207,7 @@ def test_bodies_too_close_for_all_layers_have_fewer_and_the_mesh_says_so():
     assert (alone.block.fewer_layers, alone.origin) == (0, "graded cells")
 
 
-@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("axis", [0, 1, pytest.param(2, marks=pytest.mark.slow)])
 def test_lumps_in_a_row_keep_their_numbers_and_places(axis):
     places = np.full((3, 3), [20e-3, 20e-3, 10e-3])
     places[:, axis] = np.array([0.75, 0.2, 0.45]) * SIZE[axis]
@@ -222,7 +228,9 @@ LUMPS = {
 }
 
 
-@pytest.mark.parametrize("name", LUMPS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=pytest.mark.slow if name in ("square", "cube") else ()) for name in LUMPS]
+)
 def test_lumps_in_no_row_fill_bricks(name):
     lumps = [Sphere(center=tuple(1e-3 * np.array(place)), radius=3e-3) for place in LUMPS[name]]
     assert graded_misfit(SIZE, lumps, [], COARSE) is None

@@ -101,6 +101,7 @@ def test_a_centred_tube_has_a_mirrored_mesh_and_another_has_none():
     assert [same_mirrored(aside, axis) for axis in range(3)] == [True, True, False]
 
 
+@pytest.mark.slow
 def test_a_tube_that_ends_as_far_from_either_face_has_a_mirrored_mesh():
     mesh = graded_block(SIZE, [tube((10, 20, 10), (30, 20, 10), bore=2)]).mesh
     assert all(same_mirrored(mesh, axis) for axis in range(3))
