@@ -172,8 +172,8 @@ class GraspRecord(ContactRecord[GraspModel]):
         solver, assumptions = self.experiment.solver, []
         if solver.first_guess == "tissue":
             hindrance = why_not_tissue(self.experiment)
-            acts = "in the tissue without its inclusions, if that converges"
-            assumptions.append(f"solver.first_guess: Newton begins {f'as usual, for {hindrance}' if hindrance else acts}")
+            begins = f"as usual, for {hindrance}" if hindrance else "in the tissue without its inclusions, if that converges"
+            assumptions.append(f"solver.first_guess: Newton begins {begins}")
         if solver.balance > NewtonOptions.tolerance:
             assumptions.append(f"solver.balance: unbalanced forces of up to {solver.balance:g} of the largest nodal force")
         return assumptions
