@@ -91,7 +91,7 @@ def _of_taxels(readings: Readings, beside: Array) -> PlainParts | None:
     errors = ReferenceErrors(plain, readings.noise, spread, SAME_TISSUE, 0.0)
     factor = 1 + float(plain @ change / (plain @ plain))
     along, left = (factor - 1) ** 2 * float(plain @ plain), change - (factor - 1) * plain
-    rest, same = float(left @ left), errors.white(0 * change)
+    rest, same = float(left @ left), errors.alone
     scaled = factor**2 * same + (1 - factor**2) * readings.noise**2
     return PlainParts(len(plain), along / (same + SAME_TISSUE**2 * float(plain @ plain)), rest / same, factor, rest / scaled)
 

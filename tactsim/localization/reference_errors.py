@@ -62,13 +62,17 @@ class ReferenceErrors:
     factor: float
     model: float
 
+    @property
+    def alone(self) -> float:
+        """v: variance in N^2 from taxel to taxel without a body."""
+        return float(2 * self.noise**2 + self.taxel**2 * np.mean(self.plain**2))
+
     def white(self, left: Array) -> float:
         """Variance in N^2 from taxel to taxel beside a body, from what the factor leaves of a change (taxels,) in N.
 
         Its mean square less v is that of what the body adds: errors alone, which vary by chance, are no body's.
         """
-        alone = 2 * self.noise**2 + self.taxel**2 * np.mean(self.plain**2)
-        return float(alone + self.model**2 * max(np.mean(left**2) - alone, 0.0))
+        return float(self.alone + self.model**2 * max(np.mean(left**2) - self.alone, 0.0))
 
     def covariance(self, left: Array) -> Array:
         """S (taxels, taxels) in N^2 beside a body, from what the factor leaves of a change (taxels,) in N."""
@@ -136,14 +140,14 @@ class ReferenceFit:
     @property
     def bare_factor(self) -> float:
         """Mean of f without a body."""
-        return 1 + self.errors.excess(self.change, self.errors.white(0 * self.change))
+        return 1 + self.errors.excess(self.change, self.errors.alone)
 
 
 def fitted(signals: Array, change: Array, errors: ReferenceErrors, contrast_spread: float) -> ReferenceFit:
     """How well one body of unknown contrast among candidates explains a change of force, and the factor that goes with it.
 
-    The error of the forward model is a share of what the body adds, d - (f - 1) p, and follows the factor by iteration, from the
-    one without a body on.
+    The error of the forward model is a share of what the body adds, d - (f - 1) p without its errors, and follows the factor by
+    iteration, from the one without a body on.
 
     Parameters
     ----------
@@ -163,19 +167,19 @@ def fitted(signals: Array, change: Array, errors: ReferenceErrors, contrast_spre
             "model_error above 0"
         )
     plain, few = errors.plain, signals[::THINNING]
-    excess = errors.excess(change, errors.white(0 * change))
+    excess = errors.excess(change, errors.alone)
     for _ in range(ROUNDS):
-        covariance = errors.covariance(change - excess * plain)
-        evidence, contrasts, _ = _single(few, change, covariance, contrast_spread)
+        left = change - excess * plain
+        evidence, contrasts, _ = _single(few, change, errors.covariance(left), contrast_spread)
         body = (np.exp(evidence - scipy.special.logsumexp(evidence)) * contrasts) @ few
-        excess = errors.excess(change - body, errors.white(change - excess * plain))
+        excess = errors.excess(change - body, errors.white(left))
     covariance = errors.covariance(change - excess * plain)
     return ReferenceFit(change, errors, covariance, *_single(signals, change, covariance, contrast_spread), factor=1 + excess)
 
 
 def without_error(change: Array, errors: ReferenceErrors) -> bool:
     """Whether a factor explains a change (taxels,) in N to rounding, although the errors leave no room for any other."""
-    if errors.white(0 * change) > 0:
+    if errors.alone > 0:
         return False
     left = change - errors.excess(change, 0.0) * errors.plain
     return float(np.abs(left).max()) <= ROUNDING * float(np.abs(errors.plain).max())
